@@ -62,14 +62,21 @@ void Housekeeping::work(TimePoint now)
 {
     if (std::unique_ptr<Areas> areas = background_.take_areas()) {
         coprocessor_.set_constraints(*areas, now);
+        if (recorder_ != nullptr) {
+            recorder_->areas(*areas, now);
+        }
         background_.done(std::move(areas));
     }
     const app::Parameters& parameters = coprocessor_.parameters();
     if (parameters.generation() != stored_params_ && background_.store(parameters.values(), parameters.generation())) {
         stored_params_ = parameters.generation();
     }
-    if (const auto generation = background_.stored_generation()) {
+    if (const auto generation = background_.stored_generation(); generation && generation != noted_params_) {
         coprocessor_.note_stored(*generation);
+        noted_params_ = generation;
+        if (recorder_ != nullptr) {
+            recorder_->stored(*generation);
+        }
     }
     if (endpoint_.parser_diagnostics().signed_unchecked > 0 && !reported_unchecked_) {
         background_.print(Stream::error,

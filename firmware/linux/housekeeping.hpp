@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "firmware/app/coprocessor.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
 #include "firmware/link/mavlink/signing.hpp"
 #include "firmware/linux/background.hpp"
+#include "firmware/linux/flight_log/recording_ports.hpp"
 
 namespace jink::host {
 
@@ -34,6 +36,8 @@ public:
     }
 
     void has_airspace(bool yes) { has_airspace_ = yes; }
+    /// What is handed to the co-processor is recorded too; nullptr: not.
+    void record_to(flightlog::HalRecorder* recorder) { recorder_ = recorder; }
     /// Handles a SIGHUP.
     void reload();
     /// Once per step. Signing's time is stored at the start, whenever it has moved by Signing::kStoreStep, and with
@@ -50,12 +54,14 @@ private:
     const link::mavlink::Endpoint& endpoint_;
     const link::mavlink::Signing& signing_;
     files::SigningKey given_;
+    flightlog::HalRecorder* recorder_ = nullptr;
     bool has_airspace_ = false;
     bool reported_no_airspace_ = false;
     bool reported_unchecked_ = false;
     std::uint32_t stored_params_;
-    std::uint32_t stored_key_ = 0;   ///< Signing::generation() as stored
-    std::uint64_t stored_time_ = 0;  ///< Signing::time() as stored
+    std::optional<std::uint32_t> noted_params_;  ///< generation that the co-processor knows to be stored
+    std::uint32_t stored_key_ = 0;               ///< Signing::generation() as stored
+    std::uint64_t stored_time_ = 0;              ///< Signing::time() as stored
 };
 
 }  // namespace jink::host

@@ -16,7 +16,8 @@ void complain(const files::Complaints& complaints)
     }
 }
 
-bool load_airspace(const std::string& file, hal::SystemClock& clock, app::Coprocessor& coprocessor)
+bool load_airspace(const std::string& file, hal::SystemClock& clock, app::Coprocessor& coprocessor,
+                   flightlog::HalRecorder* recorder)
 {
     timespec t{};
     ::clock_gettime(CLOCK_REALTIME, &t);
@@ -27,6 +28,9 @@ bool load_airspace(const std::string& file, hal::SystemClock& clock, app::Coproc
     complain(complaints);
     if (constraints) {
         coprocessor.set_constraints(*constraints, now);
+        if (recorder != nullptr) {
+            recorder->areas(*constraints, now);
+        }
         complain_now(file + ": " + std::to_string(constraints->size()) + " areas are closed");
     }
     return constraints.has_value();

@@ -6,6 +6,7 @@
 
 #include "firmware/app/coprocessor.hpp"
 #include "firmware/linux/complaint.hpp"
+#include "firmware/linux/flight_log/recording_ports.hpp"
 #include "firmware/linux/map_file.hpp"
 #include "hal/linux/system_clock.hpp"
 
@@ -17,7 +18,9 @@ namespace jink::host {
 void complain(const files::Complaints& complaints);
 
 /// Closes what the file says. False, and said why, where the file is not good.
-[[nodiscard]] bool load_airspace(const std::string& file, hal::SystemClock& clock, app::Coprocessor& coprocessor);
+/// @param recorder  of what the co-processor is given; may be nullptr
+[[nodiscard]] bool load_airspace(const std::string& file, hal::SystemClock& clock, app::Coprocessor& coprocessor,
+                                 flightlog::HalRecorder* recorder);
 
 /// The map of a file, or nothing, and said why.
 [[nodiscard]] std::optional<files::MapTables> load_map(const std::string& file);

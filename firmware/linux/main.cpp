@@ -19,18 +19,14 @@
 
 #include <CLI/CLI.hpp>
 
-#include "firmware/app/can_bus.hpp"
-#include "firmware/app/cloud_input.hpp"
 #include "firmware/app/coprocessor.hpp"
-#include "firmware/app/plan_memory.hpp"
-#include "firmware/app/reach_picture.hpp"
-#include "firmware/app/reach_sets.hpp"
-#include "firmware/app/work_rate.hpp"
-#include "firmware/link/mavlink/endpoint.hpp"
 #include "firmware/linux/background.hpp"
+#include "firmware/linux/flight_log/assembly.hpp"
 #include "firmware/linux/housekeeping.hpp"
 #include "firmware/linux/loading.hpp"
+#include "firmware/linux/logging.hpp"
 #include "firmware/linux/node_identity.hpp"
+#include "firmware/linux/options.hpp"
 #include "firmware/linux/param_file.hpp"
 #include "firmware/linux/param_store.hpp"
 #include "firmware/linux/ports.hpp"
@@ -45,6 +41,7 @@ namespace {
 
 using namespace jink;
 using host::complain_now;
+using host::Options;
 
 constexpr std::int64_t kTickMicroseconds = 20'000;
 /// Exit status for a command line, a file or a device that cannot be used.
@@ -56,27 +53,6 @@ volatile std::sig_atomic_t reload_requested = 0;
 
 extern "C" void request_stop(int /*signal*/) { stop_requested = 1; }
 extern "C" void request_reload(int /*signal*/) { reload_requested = 1; }
-
-struct Options {
-    std::string serial;
-    std::string link;
-    std::string can;
-    std::string cloud;
-    std::string vehicle_file;
-    std::string param_file;
-    std::string state_file;
-    std::string airspace_file;
-    std::string map_file;
-    host::SigningFiles signing;
-    std::string watchdog;
-    std::string summary;
-    double status_period = 1.0;
-    unsigned clock = 0;  ///< of the processor [MHz]; 0: not said
-    int system_id = 0;
-    int node_id = 0;
-    int realtime = 0;
-    bool quiet = false;
-};
 
 void go_realtime(int priority)
 {
@@ -156,128 +132,186 @@ link::dronecan::NodeOptions node_options(const Options& options)
     return node;
 }
 
+/// What decides beside the ports; the key stays in `signing`.
 /// @param initial  parameters of the files that people write
 /// @param stored   values in force: these, and over them what was set over a link before
 /// @param map      null: none
+flightlog::Setup set_up(const Options& options, const app::Parameters& initial, const files::ParamValues& stored,
+                        const geometry::MeshMap* map, const link::mavlink::Signing& signing)
+{
+    flightlog::Setup setup;
+    setup.system_id = static_cast<std::uint8_t>(options.system_id);
+    setup.clock = options.clock;
+    setup.on_bus = options.serial.empty() && options.link.empty();
+    setup.has_bus = !options.can.empty();
+    if (setup.has_bus) {
+        setup.node = node_options(options);
+    }
+    setup.has_cloud = !options.cloud.empty();
+    setup.logs_cloud = setup.has_cloud && options.log.clouds;
+    setup.keeps_state = !options.state_file.empty();
+    setup.map = map != nullptr ? std::optional(map->checksum) : std::nullopt;
+    setup.reach_sets = flightlog::reach_sets_checksum();
+    setup.has_key = signing.has_key();
+    setup.keys_can_be_set = signing.keys_can_be_set();
+    setup.signing_time = signing.time();
+    setup.unsigned_frames = options.signing.unsigned_frames;
+    setup.initial = initial.values();
+    setup.stored = stored;
+    setup.generation = initial.generation();
+    setup.version = flightlog::build_version();
+    setup.digest = flightlog::build_digest();
+    return setup;
+}
+
+/// The devices of jinkd, and what was read ahead of them.
+struct Devices {
+    host::AutopilotLine autopilot;
+    hal::SocketCanPort can;
+    hal::TermiosSerialPort cloud_port;
+    hal::LinuxWatchdog watchdog;
+    std::optional<host::ReadAhead> line;  ///< from open() on
+    host::CanReadAhead frames{can, app::CanBus::kMaxFramesPerStep};
+    std::optional<host::ReadAhead> cloud;
+
+    /// False, and said why, where jinkd must not start.
+    [[nodiscard]] bool open(const Options& options);
+    void read(hal::SystemClock& clock)
+    {
+        autopilot.service(clock.now_us());
+        can.service(clock.now_us());
+        cloud_port.service(clock.now_us());
+        line->pump();
+        frames.pump();
+    }
+    [[nodiscard]] host::ReadAhead* cloud_line() { return cloud ? &*cloud : nullptr; }
+};
+
+bool Devices::open(const Options& options)
+{
+    if ((!options.serial.empty() && !autopilot.open_device(options.serial)) ||
+        (!options.link.empty() && !autopilot.open_link(options.link)) ||
+        (!options.can.empty() && !host::open_can(can, options.can)) ||
+        !host::open_watchdog(watchdog, options.watchdog)) {
+        return false;
+    }
+    line.emplace(autopilot.port(), app::Coprocessor::kMaxBytesPerStep);
+    if (options.cloud.empty()) {
+        return true;
+    }
+    std::string cloud_device;
+    std::uint32_t cloud_baud = 0;
+    if (!host::split_device(options.cloud, cloud_device, cloud_baud)) {
+        complain_now("--cloud " + options.cloud + ": expected DEV[:BAUD]");
+        return false;
+    }
+    cloud.emplace(cloud_port, host::ReadAhead::kCloudRoom);
+    return host::open_serial(cloud_port, cloud_device, cloud_baud);
+}
+
+/// What the loop works with.
+struct Loop {
+    const Options& options;
+    hal::SystemClock& clock;
+    Devices& devices;
+    flightlog::Assembly& assembly;
+    host::Logging& flight_log;
+    host::Housekeeping& housekeeping;
+    host::Background& background;
+    host::StatusLog& status;
+    const host::Watched& watched;
+
+    void step()
+    {
+        devices.read(clock);
+        const std::int64_t began = clock.now_us();  // read after the bytes, so that no byte is newer
+        if (reload_requested != 0) {
+            reload_requested = 0;
+            housekeeping.reload();
+        }
+        housekeeping.work({began});
+        flight_log.begin({began});
+        const app::StepReport report = assembly.coprocessor().step({began});
+        const std::int64_t took = clock.now_us() - began;
+        flight_log.end(report, assembly.coprocessor(), {began}, took, background);
+        if (const auto text = status.note(report, watched, began, took)) {
+            background.print(host::Stream::out, *text);
+        }
+    }
+    void run()
+    {
+        std::int64_t next = clock.now_us();
+        while (stop_requested == 0) {
+            step();
+            next += kTickMicroseconds;
+            next = std::max(next, clock.now_us());  // after a late step: no burst of steps to catch up
+            wait_until(next, clock, devices.cloud_line());
+        }
+    }
+    void stop()
+    {
+        const TimePoint end{clock.now_us()};
+        flight_log.begin_shut_down(end);
+        assembly.coprocessor().shut_down(end);
+        housekeeping.store_all();
+        let_go_out(devices.autopilot, clock);
+        devices.watchdog.close();
+        devices.autopilot.close();
+        flight_log.end_shut_down(end);
+        if (!options.quiet) {
+            background.print(host::Stream::error, "jinkd: stopped");
+        }
+    }
+};
+
 int run(const Options& options, const app::Parameters& initial, const files::ParamValues& stored,
         const geometry::MeshMap* map)
 {
     hal::SystemClock clock;
-    host::AutopilotLine autopilot;
-    hal::SocketCanPort can;
-    host::CanReadAhead frames(can, app::CanBus::kMaxFramesPerStep);
-    std::optional<app::CanBus> bus;
-    hal::LinuxWatchdog watchdog;
-    if ((!options.serial.empty() && !autopilot.open_device(options.serial)) ||
-        (!options.link.empty() && !autopilot.open_link(options.link))) {
-        return kRefused;
-    }
-    if (!options.can.empty()) {
-        if (!host::open_can(can, options.can)) {
-            return kRefused;
-        }
-        bus.emplace(frames, node_options(options));
-    }
-    host::ReadAhead line(autopilot.port(), app::Coprocessor::kMaxBytesPerStep);
-    hal::SerialPort& port = options.serial.empty() && options.link.empty() ? bus->serial() : line;
-    if (!host::open_watchdog(watchdog, options.watchdog)) {
-        return kRefused;
-    }
-
-    hal::TermiosSerialPort cloud_port;
-    std::optional<host::ReadAhead> cloud_line;
-    if (!options.cloud.empty()) {
-        std::string cloud_device;
-        std::uint32_t cloud_baud = 0;
-        if (!host::split_device(options.cloud, cloud_device, cloud_baud)) {
-            complain_now("--cloud " + options.cloud + ": expected DEV[:BAUD]");
-            return kRefused;
-        }
-        if (!host::open_serial(cloud_port, cloud_device, cloud_baud)) {
-            return kRefused;
-        }
-        cloud_line.emplace(cloud_port, host::ReadAhead::kCloudRoom);
-    }
-    // Single points of the link are used without a cloud port too.
-    const auto clouds = std::make_unique<app::CloudInput>(cloud_line ? &*cloud_line : nullptr);
-
-    link::mavlink::EndpointOptions link_options;
-    link_options.system_id = static_cast<std::uint8_t>(options.system_id);
+    Devices devices;
     link::mavlink::Signing signing;
     files::SigningState signing_state;
-    if (!host::set_up_signing(options.signing, signing_state, signing)) {
+    if (!devices.open(options) || !host::set_up_signing(options.signing, signing_state, signing)) {
         return kRefused;
     }
-    link::mavlink::Endpoint endpoint(link_options, &signing);
-    const auto coprocessor =
-        std::make_unique<app::Coprocessor>(endpoint, port, watchdog, initial, bus ? &*bus : nullptr);
-    static_cast<void>(coprocessor->restore_parameters(stored));  // validated together when they were read
-    if (!options.state_file.empty()) {
-        coprocessor->note_stored(coprocessor->parameters().generation());
-    }
-    const std::unique_ptr<app::PlanMemory> plans = options.clock != 0 ? std::make_unique<app::PlanMemory>() : nullptr;
-    if (plans && !coprocessor->plan_in_slices(plans->plan, app::WorkRate::of_megahertz(options.clock).work())) {
+    const flightlog::Setup setup = set_up(options, initial, stored, map, signing);
+    host::Logging flight_log(options.log, setup);
+    const flightlog::AssemblyPorts ports{setup.on_bus ? nullptr : &flight_log.line(*devices.line),
+                                         setup.has_bus ? &flight_log.can(devices.frames) : nullptr,
+                                         devices.cloud ? &flight_log.cloud(*devices.cloud) : nullptr};
+    flightlog::Assembly assembly(setup, initial, ports, devices.watchdog, signing, map);
+    if (!assembly.has_time_for_plans()) {
         complain_now("--clock: a step at this clock has no time for a plan");
         return kRefused;
     }
-    coprocessor->use_clouds(*clouds);
-    if (map != nullptr) {
-        coprocessor->use_map(*map);
-    }
-    const auto picture = std::make_unique<app::ReachPicture>(app::reach_sets());
-    if (cloud_line) {
-        coprocessor->let_reach_sets_see(*picture);
-    }
-    if (app::kHasReach && reach::check(app::reach_sets()) != reach::SetStatus::good) {
+    if (assembly.are_reach_sets_damaged()) {
         complain_now("the reach sets are damaged and left out");
-        coprocessor->leave_out_reach_sets();
     }
-    if (!options.airspace_file.empty() && !host::load_airspace(options.airspace_file, clock, *coprocessor)) {
+    app::Coprocessor& coprocessor = assembly.coprocessor();
+    if (!options.airspace_file.empty() &&
+        !host::load_airspace(options.airspace_file, clock, coprocessor, flight_log.recorder())) {
         return kRefused;
     }
-    host::StatusLog log(options.quiet ? 0.0 : options.status_period);
-    const host::Watched watched{*coprocessor, endpoint, port, bus ? &*bus : nullptr, *clouds};
+    host::StatusLog status(options.quiet ? 0.0 : options.status_period);
+    const hal::SerialPort& mavlink = setup.on_bus ? assembly.bus()->serial() : *devices.line;
+    const host::Watched watched{coprocessor,    assembly.endpoint(), mavlink,
+                                assembly.bus(), assembly.clouds(),   flight_log.output()};
     host::BackgroundCounts counts;
     {
         host::Background background(
             {options.airspace_file, options.state_file, options.signing.store, initial.values()});
-        host::Housekeeping housekeeping(background, *coprocessor, endpoint, signing, signing_state.given);
+        host::Housekeeping housekeeping(background, coprocessor, assembly.endpoint(), signing, signing_state.given);
         housekeeping.has_airspace(!options.airspace_file.empty());
+        housekeeping.record_to(flight_log.recorder());
         if (options.realtime > 0) {
             go_realtime(options.realtime);  // this thread alone
         }
-        std::int64_t next = clock.now_us();
-        while (stop_requested == 0) {
-            autopilot.service(clock.now_us());
-            can.service(clock.now_us());
-            cloud_port.service(clock.now_us());
-            line.pump();
-            frames.pump();
-            const std::int64_t began = clock.now_us();  // read after the bytes, so that no byte is newer
-            if (reload_requested != 0) {
-                reload_requested = 0;
-                housekeeping.reload();
-            }
-            housekeeping.work({began});
-            const app::StepReport report = coprocessor->step({began});
-            if (const auto text = log.note(report, watched, began, clock.now_us() - began)) {
-                background.print(host::Stream::out, *text);
-            }
-            next += kTickMicroseconds;
-            next = std::max(next, clock.now_us());  // after a late step: no burst of steps to catch up
-            wait_until(next, clock, cloud_line ? &*cloud_line : nullptr);
-        }
-        coprocessor->shut_down({clock.now_us()});
-        housekeeping.store_all();
-        let_go_out(autopilot, clock);
-        watchdog.close();
-        autopilot.close();
-        if (!options.quiet) {
-            background.print(host::Stream::error, "jinkd: stopped");
-        }
+        Loop loop{options, clock, devices, assembly, flight_log, housekeeping, background, status, watched};
+        loop.run();
+        loop.stop();
         counts = background.counts();
     }
-    if (!options.summary.empty() && !log.write_summary(options.summary, watched, counts)) {
+    if (!options.summary.empty() && !status.write_summary(options.summary, watched, counts)) {
         complain_now(options.summary + " cannot be written");
         return EXIT_FAILURE;
     }
@@ -288,60 +322,9 @@ int run(const Options& options, const app::Parameters& initial, const files::Par
 
 int main(int argc, char** argv)
 {
-    Options options;
-    CLI::App cli{
-        "jinkd: collision avoidance beside a PX4 or ArduPilot autopilot, over MAVLink on a serial line, with\n"
-        "sensors and traffic on a DroneCAN bus, or over MAVLink through that bus. Runs until SIGTERM or SIGINT."};
-    cli.set_version_flag("--version", "jinkd " JINK_VERSION);
-    CLI::Option* const serial =
-        cli.add_option("--serial", options.serial, "device and baud rate, DEV[:BAUD]; 921600 where none is given");
-    CLI::Option* const link =
-        cli.add_option("--link", options.link,
-                       "line to the autopilot: udp:[ADDRESS:]PORT listens and answers whom it hears first, "
-                       "udpout:ADDRESS:PORT sends there, tcp:ADDRESS:PORT connects; serial:DEV[:BAUD] is --serial. "
-                       "Without ADDRESS: this machine alone")
-            ->excludes(serial);
-    CLI::Option* const can =
-        cli.add_option("--can", options.can,
-                       "CAN interface with a DroneCAN bus; without --serial and --link MAVLink goes "
-                       "through "
-                       "it. Its bit rate and queue are set by\n"
-                       "the system, not here: ip link set can0 type can bitrate 1000000 "
-                       "restart-ms 100; ip link set can0 txqueuelen 128 up");
-    cli.add_option("--node-id", options.node_id, "DroneCAN node id, 1 to 127; 0: asks the bus for one")
-        ->check(CLI::Range(0, 127))
-        ->needs(can);
-    CLI::Option* const cloud = cli.add_option(
-        "--cloud", options.cloud,
-        "device and baud rate, DEV[:BAUD], on which a LiDAR's driver sends point clouds in compact frames");
-    cli.add_option("--vehicle", options.vehicle_file, "vehicle file (YAML): limits, airframe, cost caps");
-    cli.add_option("--params", options.param_file, "parameter file, NAME,VALUE per line; wins over the vehicle file");
-    cli.add_option("--state", options.state_file,
-                   "file that keeps parameters set over MAVLink or the bus; wins over the files above. Without this "
-                   "option: the parameter file's name with .state, if there is one");
-    cli.add_option("--airspace", options.airspace_file,
-                   "airspace file (YAML): closed areas and storm cells; read anew on SIGHUP");
-    cli.add_option("--map", options.map_file,
-                   "map of known surroundings, made by jink mesh build; one that is not good ends jinkd with status 2");
-    cli.add_option("--signing-key", options.signing.key,
-                   "file with the key of MAVLink signing: 64 hexadecimal digits, or 'passphrase TEXT'. Frames are then "
-                   "signed, and unsigned ones refused");
-    cli.add_option("--unsigned", options.signing.unsigned_frames,
-                   "unsigned frames that are taken although a key is set: none, all, or message ids, as 109,246");
-    cli.add_option("--system-id", options.system_id, "MAVLink system to serve; 0: the first autopilot heard")
-        ->check(CLI::Range(0, 255));
-    cli.add_option("--status-period", options.status_period, "seconds between status lines; 0: none")
-        ->check(CLI::Range(0.0, 3600.0));
-    cli.add_option("--summary", options.summary, "write counters and step times to this file (JSON) at the end");
-    cli.add_option("--watchdog", options.watchdog, "watchdog device to feed, e.g. /dev/watchdog0");
-    cli.add_option("--clock", options.clock,
-                   "the processor's clock [MHz]: a step does the work that fits there, and plans go on over several "
-                   "steps. Without: work for 1000 MHz and more, a plan in one step")
-        ->check(CLI::Range(app::WorkRate::kMinMegahertz, app::WorkRate::kMaxMegahertz))
-        ->excludes(cloud);
-    cli.add_option("--realtime", options.realtime, "SCHED_FIFO priority and locked memory; 0: off")
-        ->check(CLI::Range(0, 99));
-    cli.add_flag("--quiet", options.quiet, "errors only");
+    host::Options options;
+    CLI::App cli{host::kAbout};
+    host::add_options(cli, options);
     try {
         cli.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -350,7 +333,10 @@ int main(int argc, char** argv)
 
     ignore_what_outputs_raise();
     catch_signals();
-    if (serial->empty() && link->empty() && can->empty()) {
+    const bool has_serial = cli.count("--serial") > 0;
+    const bool has_link = cli.count("--link") > 0;
+    const bool has_can = cli.count("--can") > 0;
+    if (!has_serial && !has_link && !has_can) {
         complain_now("--serial, --link or --can is needed");
         return kRefused;
     }
@@ -358,11 +344,11 @@ int main(int argc, char** argv)
         complain_now("--serial " + options.serial + ": that is no device; --link " + options.serial);
         return kRefused;
     }
-    if (!can->empty() && options.can.empty()) {
+    if (has_can && options.can.empty()) {
         complain_now("--can: the name of an interface is needed");
         return kRefused;
     }
-    if ((!serial->empty() && options.serial.empty()) || (!link->empty() && options.link.empty())) {
+    if ((has_serial && options.serial.empty()) || (has_link && options.link.empty())) {
         complain_now("--serial, --link: the name of a line is needed");
         return kRefused;
     }

@@ -175,6 +175,10 @@ std::string status_line(const app::StepReport& report, const Watched& watched, s
         add("can %s node %u frames %llu/%llu ", name_of(h.state), watched.bus->endpoint().node().id(),
             static_cast<unsigned long long>(h.frames_in), static_cast<unsigned long long>(h.frames_out));
     }
+    if (watched.log != nullptr) {
+        const flightlog::LogCounts log = watched.log->counts();
+        add("log files %u dropped %u failures %u ", log.files, log.dropped, log.write_failures);
+    }
     const link::LinkDiagnostics& l = watched.endpoint.diagnostics();
     add("frames %u/%u refused %u step max %lld us", l.frames_in, l.frames_out, l.frames_refused,
         static_cast<long long>(longest_us));
@@ -299,6 +303,11 @@ bool StatusLog::write_summary(const std::string& path, const Watched& watched, c
                  "  \"lines_dropped\": %u, \"airspace_reloads\": %u, \"airspace_reload_failures\": %u, "
                  "\"params_stored\": %u, \"params_store_failures\": %u,\n",
                  counts.dropped, counts.reloads, counts.reload_failures, counts.stores, counts.store_failures);
+    const flightlog::LogCounts log = watched.log != nullptr ? watched.log->counts() : flightlog::LogCounts{};
+    std::fprintf(f,
+                 "  \"log_messages\": %u, \"log_messages_dropped\": %u, \"log_write_failures\": %u, "
+                 "\"log_files\": %u, \"log_queue_peak\": %u,\n",
+                 log.messages, log.dropped, log.write_failures, log.files, log.peak);
     std::fprintf(f, "  \"port_disconnects\": %llu, \"port_reconnects\": %llu\n}\n",
                  static_cast<unsigned long long>(port.disconnects), static_cast<unsigned long long>(port.reconnects));
     const bool written = std::fclose(f) == 0 && write_file(path, {text, size});

@@ -11,6 +11,7 @@
 #include "firmware/app/coprocessor.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
 #include "firmware/linux/background.hpp"
+#include "firmware/linux/flight_log/output.hpp"
 #include "hal/serial_port.hpp"
 
 namespace jink::host {
@@ -22,6 +23,7 @@ struct Watched {
     const hal::SerialPort& port;  ///< MAVLink's
     const app::CanBus* bus;       ///< nullptr: no bus
     const app::CloudInput& clouds;
+    const flightlog::Output* log;  ///< nullptr: no log
 };
 
 /// The daemon's status line and its final summary.

@@ -12,8 +12,9 @@ TEST(Jinkd, HelpNamesEveryOptionOfTheReadme)
     Daemon daemon({"--help"}, scratch / "out");
     EXPECT_EQ(daemon.wait(kPatience), 0);
     const std::string help = text_of(scratch / "out");
-    for (const char* option : {"--serial", "--can", "--node-id", "--vehicle", "--params", "--summary", "--watchdog",
-                               "--system-id", "--cloud", "--map", "--clock"}) {
+    for (const char* option :
+         {"--serial", "--can", "--node-id", "--vehicle", "--params", "--summary", "--watchdog", "--system-id",
+          "--cloud", "--map", "--clock", "--log", "--log-clouds", "--log-size", "--log-count"}) {
         EXPECT_NE(help.find(option), std::string::npos) << option;
     }
 }
@@ -36,6 +37,10 @@ TEST(Jinkd, RefusesWhatItCannotUse)
         {"--serial", "/dev/ptmx", "--system-id", "256"},
         {"--serial", "/dev/ptmx", "--cloud", "/dev/null:0"},
         {"--serial", "/dev/ptmx", "--cloud", file},
+        {"--serial", "/dev/ptmx", "--log-clouds"},
+        {"--serial", "/dev/ptmx", "--log", "/tmp", "--log-clouds"},
+        {"--serial", "/dev/ptmx", "--log", "/tmp", "--log-count", "1"},
+        {"--serial", "/dev/ptmx", "--log", "/tmp", "--log-size", "0"},
         {"--serial", "/dev/ptmx", "--clock", "20"},
         {"--serial", "/dev/ptmx", "--clock", "500", "--cloud", "/dev/ptmx"},
         {"--can", ""},

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs the MAVLink peer of tests/peer with npm, exactly as package-lock.json says. Does nothing, and needs no network,
-# when that has been done already.
+# Installs the peers of tests/peer (MAVLink, ULog) with npm, exactly as package-lock.json says. Does nothing, and needs
+# no network, when that has been done already.
 set -eu
 cd "$(dirname "$0")"
 stamp=node_modules/.jink-lock

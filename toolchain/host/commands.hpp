@@ -15,6 +15,7 @@ inline constexpr int kExitBadInput = 2;  ///< invalid file or command line
 
 void add_campaign(CLI::App& jink);
 void add_check(CLI::App& jink);
+void add_log(CLI::App& jink);
 void add_mesh(CLI::App& jink);
 void add_plan(CLI::App& jink);
 void add_reach(CLI::App& jink);

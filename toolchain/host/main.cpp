@@ -12,6 +12,7 @@ int main(int argc, char** argv)
     try {
         jink::host::add_campaign(app);
         jink::host::add_check(app);
+        jink::host::add_log(app);
         jink::host::add_mesh(app);
         jink::host::add_plan(app);
         jink::host::add_reach(app);

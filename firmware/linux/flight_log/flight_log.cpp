@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "firmware/linux/flight_log/flight_log.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+
+namespace jink::flightlog {
+namespace {
+
+std::uint64_t stamp_of(TimePoint now) { return static_cast<std::uint64_t>(now.us); }
+
+/// A text of a fixed size; what does not fit is cut.
+class Line {
+public:
+    template <class... Values>
+    Line& add(const char* format, Values... values) noexcept
+    {
+        // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): GCC 12 has no std::format
+        const int n = std::snprintf(text_.data() + size_, text_.size() - size_, format, values...);
+        size_ = std::min(size_ + static_cast<std::size_t>(std::max(n, 0)), text_.size() - 1);
+        return *this;
+    }
+    Line& add_name(std::string_view name) noexcept { return add("%.*s", static_cast<int>(name.size()), name.data()); }
+    [[nodiscard]] std::string_view view() const noexcept { return {text_.data(), size_}; }
+
+private:
+    std::array<char, 240> text_{};
+    std::size_t size_ = 0;
+};
+
+/// "conflict with track 7 in 3.2 s, faults none": why something changed.
+void add_reason(const app::StepReport& report, std::uint32_t id, Line& line)
+{
+    if (const auto& conflict = report.guidance.conflict) {
+        line.add("conflict with ").add_name(name_of(conflict->threat.kind));
+        line.add(" %u in %.1f s", id != 0 ? id : static_cast<unsigned>(conflict->threat.index),
+                 static_cast<double>(conflict->time_to_loss));
+    } else {
+        line.add("no conflict");
+    }
+    line.add(", faults 0x%x", report.faults);
+}
+
+}  // namespace
+
+std::uint32_t track_in_conflict(const app::StepReport& report, app::Coprocessor& coprocessor, TimePoint now) noexcept
+{
+    const auto& conflict = report.guidance.conflict;
+    if (!conflict || conflict->threat.kind != world::ThreatKind::track) {
+        return 0;
+    }
+    const std::span<const world::Track> tracks = coprocessor.tracks(now);
+    return conflict->threat.index < tracks.size() ? tracks[conflict->threat.index].id : 0;
+}
+
+FlightLog::FlightLog(Output& output, const Limits& limits, const files::ParamValues& parameters)
+    : output_(output), recorder_(limits.record), parameters_(parameters)
+{
+}
+
+template <class T>
+void FlightLog::put(TopicId id, const T& topic) noexcept
+{
+    output_.add(ulog::Composer(message_)
+                    .begin(ulog::Type::data)
+                    .put(static_cast<std::uint16_t>(id))
+                    .put_bytes(content_of(topic))
+                    .end());
+}
+
+void FlightLog::put_text(ulog::Level level, TimePoint now, std::string_view text) noexcept
+{
+    output_.add(ulog::Composer(message_).begin(ulog::Type::text).put(level).put(stamp_of(now)).put_text(text).end());
+}
+
+/// Cuts the record into parts; each is a message of the smallest size that holds it.
+void FlightLog::put_record(TimePoint now) noexcept
+{
+    const EntryWriter& entries = recorder_.end();
+    std::span<const std::byte> rest = entries.record();
+    if (entries.overflowed()) {
+        ++sequence_;
+        output_.lose();
+        rest = {};
+    }
+    while (!rest.empty()) {
+        const std::size_t n = std::min<std::size_t>(rest.size(), kHalSizes.back());
+        const auto* const size = std::lower_bound(kHalSizes.begin(), kHalSizes.end(), n);
+        const auto id = static_cast<std::uint16_t>(static_cast<std::size_t>(TopicId::hal) +
+                                                   static_cast<std::size_t>(size - kHalSizes.begin()));
+        const bool goes_on = n < rest.size();
+        const HalHead head{stamp_of(now), sequence_++, static_cast<std::uint16_t>(n),
+                           goes_on ? HalHead::kGoesOn : std::uint16_t{0}};
+        ulog::Composer message(message_);
+        message.begin(ulog::Type::data).put(id).put(head).put_bytes(rest.first(n));
+        output_.add(message.fill(*size - n).end());
+        rest = rest.subspan(n);
+    }
+    recorder_.clear();
+}
+
+void FlightLog::put_sent_texts(TimePoint now) noexcept
+{
+    for (const SentTexts::Text& text : recorder_.texts().texts()) {
+        put_text(static_cast<ulog::Level>('0' + text.severity), now, text.view());
+    }
+    recorder_.texts().clear();
+}
+
+void FlightLog::put_own(const app::StepReport& report, const app::Coprocessor& coprocessor, TimePoint now) noexcept
+{
+    const vehicle::VehicleState& own = coprocessor.own();
+    if (own.stamp.us == own_stamp_ || report.own_source == app::OwnSource::none) {
+        return;
+    }
+    own_stamp_ = own.stamp.us;
+    put(TopicId::own, OwnTopic{stamp_of(now), stamp_of(own.stamp), xyz_of(own.position), xyz_of(own.velocity), own.yaw,
+                               static_cast<std::uint8_t>(report.own_source)});
+}
+
+void FlightLog::put_tracks(app::Coprocessor& coprocessor, TimePoint now) noexcept
+{
+    for (const world::Track& t : coprocessor.tracks(now)) {
+        put(TopicId::track,
+            TrackTopic{stamp_of(now), t.id, xyz_of(t.position), xyz_of(t.velocity), t.radius, t.half_height,
+                       now - t.stamp, t.instance, static_cast<std::uint8_t>(t.source), t.manned, t.cooperative});
+    }
+}
+
+void FlightLog::put_counters(const app::Coprocessor& coprocessor, TimePoint now) noexcept
+{
+    ulog::Composer message(message_);
+    message.begin(ulog::Type::data).put(TopicId::app_counters).put(stamp_of(now));
+    for (const auto& counter : app_counters()) {
+        message.put(coprocessor.diagnostics().*counter.member);
+    }
+    output_.add(message.end());
+    message.begin(ulog::Type::data).put(TopicId::avoid_counters).put(stamp_of(now));
+    for (const auto& counter : avoid_counters()) {
+        message.put(coprocessor.supervisor_diagnostics().*counter.member);
+    }
+    output_.add(message.end());
+    const LogCounts counts = output_.counts();
+    put(TopicId::log,
+        LogTopic{stamp_of(now), counts.messages, counts.dropped, counts.write_failures, counts.files, counts.peak});
+}
+
+void FlightLog::put_candidates(const app::Coprocessor& coprocessor, TimePoint now) noexcept
+{
+#ifndef JINK_WITHOUT_GEOMETRIC
+    const geometric::Result& result = coprocessor.planner().last();
+    for (std::size_t i = 0; i < result.candidates.size(); ++i) {
+        CandidateTopic topic = candidate_topic(result.candidates[i]);
+        topic.timestamp = stamp_of(now);
+        topic.decision = decisions_;
+        topic.index = static_cast<std::uint16_t>(i);
+        topic.attempt = static_cast<std::uint8_t>(result.attempt);
+        put(TopicId::candidate, topic);
+    }
+#else
+    static_cast<void>(coprocessor);
+    static_cast<void>(now);
+#endif
+}
+
+void FlightLog::put_changes(const app::StepReport& report, std::uint32_t id, TimePoint now) noexcept
+{
+    if (report.state != last_.state || report.faults != last_.faults) {
+        const bool is_bad = report.state >= link::SystemState::critical;
+        Line line;
+        line.add("state ").add_name(name_of(report.state)).add(": ");
+        add_reason(report, id, line);
+        put_text(is_bad ? ulog::Level::critical : ulog::Level::info, now, line.view());
+    }
+    if (report.control != last_.control) {
+        Line line;
+        line.add("control ").add_name(name_of(last_.control)).add(" -> ").add_name(name_of(report.control)).add(": ");
+        add_reason(report, id, line);
+        put_text(ulog::Level::notice, now, line.view());
+    }
+    const avoid::Guidance& g = report.guidance;
+    if (g.new_manoeuvre || g.state != last_.guidance.state) {
+        Line line;
+        line.add("guidance ").add_name(name_of(last_.guidance.state)).add(" -> ").add_name(name_of(g.state));
+        line.add(g.new_manoeuvre ? ", new manoeuvre " : ", ").add_name(name_of(g.kind));
+        line.add(" by method %u, margin %.2f m, cost %.3f: ", g.by, static_cast<double>(g.margin),
+                 static_cast<double>(g.cost));
+        add_reason(report, id, line);
+        put_text(ulog::Level::notice, now, line.view());
+    }
+}
+
+void FlightLog::put_changed_parameters(const app::Parameters& parameters) noexcept
+{
+    const bool is_first = !has_generation_;
+    if (!is_first && parameters.generation() == generation_) {
+        return;
+    }
+    generation_ = parameters.generation();
+    has_generation_ = true;
+    for (std::size_t i = 0; i < parameters_.size(); ++i) {
+        const float value = parameters.values()[i];
+        if (value == parameters_[i]) {
+            continue;
+        }
+        parameters_[i] = value;
+        const app::ParamInfo& info = app::param_table()[i];
+        const std::string_view type = info.integer ? "int32_t " : "float ";
+        ulog::Composer message(message_);
+        message.begin(ulog::Type::parameter).put(static_cast<std::uint8_t>(type.size() + info.name.size()));
+        message.put_text(type).put_text(info.name);
+        output_.add(info.integer ? message.put(static_cast<std::int32_t>(value)).end() : message.put(value).end());
+    }
+}
+
+void FlightLog::end(const app::StepReport& report, app::Coprocessor& coprocessor, TimePoint began,
+                    std::int64_t took_us) noexcept
+{
+    put_record(began);
+    const std::uint32_t id = track_in_conflict(report, coprocessor, began);
+    StepTopic step = step_topic(report, began, id);
+    step.step = steps_++;
+    step.duration_us = static_cast<std::uint32_t>(std::clamp<std::int64_t>(took_us, 0, 0xFFFFFFFF));
+    put(TopicId::step, step);
+    put_own(report, coprocessor, began);
+    put_changes(report, id, began);
+    if (!recorder_.texts().texts().empty()) {
+        put_sent_texts(began);
+    }
+    if (report.guidance.new_manoeuvre) {
+        ++decisions_;
+        put_candidates(coprocessor, began);
+    }
+    put_changed_parameters(coprocessor.parameters());
+    if (began.us >= tracks_due_) {
+        put_tracks(coprocessor, began);
+        tracks_due_ = began.us + kTrackPeriod;
+    }
+    if (began.us >= counters_due_) {
+        put_counters(coprocessor, began);
+        counters_due_ = began.us + kCounterPeriod;
+    }
+    last_ = report;
+}
+
+void FlightLog::end_shut_down(TimePoint now) noexcept
+{
+    put_record(now);
+    put_sent_texts(now);
+    put_text(ulog::Level::info, now, "jinkd stops");
+}
+
+}  // namespace jink::flightlog

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "firmware/app/coprocessor.hpp"
+#include "firmware/linux/flight_log/output.hpp"
+#include "firmware/linux/flight_log/recording_ports.hpp"
+#include "firmware/linux/flight_log/topics.hpp"
+#include "firmware/linux/param_file.hpp"
+
+namespace jink::flightlog {
+
+/// Id of the track in conflict, after the step at `now`; 0: there is none.
+[[nodiscard]] std::uint32_t track_in_conflict(const app::StepReport& report, app::Coprocessor& coprocessor,
+                                              TimePoint now) noexcept;
+
+/// The control loop's side of a flight log: composes what a step did and gives it to an output. Never waits, and
+/// allocates nothing after its construction.
+///
+/// Memory: the largest record of a step (Limits) and 70 KiB.
+class FlightLog {
+public:
+    struct Limits {
+        /// Of one record [bytes]: 4 KiB read and 8 KiB written on the line, and 2500 closed areas of up to 61 bytes.
+        std::size_t record = 192U * 1024U;
+        static constexpr std::size_t kOfBus = 96U * 1024U;      ///< 512 frames received, and as many sent
+        static constexpr std::size_t kOfClouds = 192U * 1024U;  ///< app::kMaxCloudBytesPerStep
+    };
+
+    /// @param output      outlives this
+    /// @param parameters  in force at the start, as in the definitions
+    FlightLog(Output& output, const Limits& limits, const files::ParamValues& parameters);
+    FlightLog(const FlightLog&) = delete;
+    FlightLog& operator=(const FlightLog&) = delete;
+
+    /// For the ports, and for what is set from outside of them.
+    [[nodiscard]] HalRecorder& recorder() noexcept { return recorder_; }
+
+    /// Before everything of a step that is not bytes: the step follows.
+    void begin(TimePoint began) noexcept { recorder_.begin(began); }
+    /// After the step.
+    void end(const app::StepReport& report, app::Coprocessor& coprocessor, TimePoint began,
+             std::int64_t took_us) noexcept;
+    /// Before and after Coprocessor::shut_down.
+    void begin_shut_down(TimePoint now) noexcept { recorder_.begin_shut_down(now); }
+    void end_shut_down(TimePoint now) noexcept;
+
+private:
+    static constexpr std::int64_t kTrackPeriod = 200'000;      ///< [us]
+    static constexpr std::int64_t kCounterPeriod = 1'000'000;  ///< [us]
+
+    template <class T>
+    void put(TopicId id, const T& topic) noexcept;
+    void put_text(ulog::Level level, TimePoint now, std::string_view text) noexcept;
+    void put_record(TimePoint now) noexcept;
+    void put_sent_texts(TimePoint now) noexcept;
+    void put_own(const app::StepReport& report, const app::Coprocessor& coprocessor, TimePoint now) noexcept;
+    void put_tracks(app::Coprocessor& coprocessor, TimePoint now) noexcept;
+    void put_counters(const app::Coprocessor& coprocessor, TimePoint now) noexcept;
+    void put_candidates(const app::Coprocessor& coprocessor, TimePoint now) noexcept;
+    void put_changes(const app::StepReport& report, std::uint32_t conflict_id, TimePoint now) noexcept;
+    void put_changed_parameters(const app::Parameters& parameters) noexcept;
+
+    Output& output_;
+    HalRecorder recorder_;
+    std::array<std::byte, ulog::kMessageHeader + HalHead::kBytes + 4096 + 16> message_{};
+    files::ParamValues parameters_;
+    std::uint32_t generation_ = 0;
+    bool has_generation_ = false;
+    std::uint32_t sequence_ = 0;
+    std::uint32_t steps_ = 0;
+    std::uint32_t decisions_ = 0;
+    std::int64_t own_stamp_ = -1;
+    std::int64_t tracks_due_ = 0;
+    std::int64_t counters_due_ = 0;
+    app::StepReport last_;
+};
+
+}  // namespace jink::flightlog

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "firmware/linux/flight_log/hal_record.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace jink::flightlog {
+namespace {
+
+constexpr unsigned kExtended = 1U;
+constexpr unsigned kRemote = 2U;
+constexpr unsigned kFd = 4U;
+constexpr unsigned kRateSwitch = 8U;
+
+}  // namespace
+
+hal::PortHealth to_port_health(const Health& n) noexcept
+{
+    return {static_cast<hal::PortState>(n[0]), n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9], n[10]};
+}
+
+hal::CanHealth to_can_health(const Health& n) noexcept
+{
+    return {
+        static_cast<hal::CanState>(n[0]), n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9], n[10], n[11], n[12]};
+}
+
+void EntryWriter::bytes(std::span<const std::byte> bytes) noexcept
+{
+    if (bytes.size() > bytes_.size() - size_) {
+        overflowed_ = true;
+        return;
+    }
+    if (!bytes.empty()) {
+        std::memcpy(bytes_.data() + size_, bytes.data(), bytes.size());
+        size_ += bytes.size();
+    }
+}
+
+void EntryWriter::frame(const hal::CanFrame& f) noexcept
+{
+    put(f.id);
+    put(static_cast<std::uint8_t>((f.extended ? kExtended : 0U) | (f.remote ? kRemote : 0U) | (f.fd ? kFd : 0U) |
+                                  (f.bit_rate_switch ? kRateSwitch : 0U)));
+    put(f.length);
+    bytes(std::span(f.data).first(std::min<std::size_t>(f.length, f.data.size())));
+}
+
+void EntryWriter::area(const app::Constraint& a) noexcept
+{
+    const world::Cylinder& c = a.cylinder;
+    for (const float value : {c.circle.centre.x(), c.circle.centre.y(), c.circle.radius, c.velocity.x(), c.velocity.y(),
+                              c.bottom, c.top, c.margin}) {
+        put(value);
+    }
+    put(a.stamp.us);
+    put(a.ends.us);
+    put(static_cast<std::uint8_t>(a.about ? 1 : 0));
+    if (a.about) {
+        put(a.about->lat);
+        put(a.about->lon);
+        put(a.about->alt);
+    }
+}
+
+void EntryWriter::health(const Health& before, const Health& now) noexcept
+{
+    unsigned differs = 0;
+    std::array<std::uint64_t, kHealthNumbers> differences{};
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < now.size(); ++i) {
+        if (now[i] != before[i]) {
+            differs |= 1U << i;
+            differences[n++] = now[i] - before[i];  // modulo 2^64: a counter that is smaller takes ten bytes
+        }
+    }
+    byte(differs & 0xFFU);
+    byte(differs >> 8U);
+    for (std::size_t i = 0; i < n; ++i) {
+        count(differences[i]);
+    }
+}
+
+Entry EntryReader::kind() const noexcept
+{
+    return rest_.empty() ? Entry::none : static_cast<Entry>(static_cast<unsigned>(rest_.front()) & 0x0FU);
+}
+
+Port EntryReader::port() const noexcept
+{
+    return rest_.empty() ? Port::line : static_cast<Port>(static_cast<unsigned>(rest_.front()) >> 4U);
+}
+
+std::uint64_t EntryReader::count() noexcept
+{
+    std::uint64_t value = 0;
+    for (unsigned shift = 0; shift < 64U; shift += 7U) {
+        const auto part = number<std::uint8_t>();
+        value |= static_cast<std::uint64_t>(part & 0x7FU) << shift;
+        if (part < 0x80U) {
+            break;
+        }
+    }
+    return value;
+}
+
+std::span<const std::byte> EntryReader::bytes(std::uint64_t n) noexcept
+{
+    if (n > rest_.size()) {
+        good_ = false;
+        rest_ = {};
+        return {};
+    }
+    const std::span<const std::byte> taken = rest_.first(static_cast<std::size_t>(n));
+    rest_ = rest_.subspan(taken.size());
+    return taken;
+}
+
+hal::CanFrame EntryReader::frame() noexcept
+{
+    hal::CanFrame f;
+    f.id = number<std::uint32_t>();
+    const unsigned flags = number<std::uint8_t>();
+    f.extended = (flags & kExtended) != 0;
+    f.remote = (flags & kRemote) != 0;
+    f.fd = (flags & kFd) != 0;
+    f.bit_rate_switch = (flags & kRateSwitch) != 0;
+    f.length = number<std::uint8_t>();
+    const std::span<const std::byte> data = bytes(std::min<std::size_t>(f.length, f.data.size()));
+    std::copy(data.begin(), data.end(), f.data.begin());
+    return f;
+}
+
+app::Constraint EntryReader::area() noexcept
+{
+    app::Constraint a;
+    world::Cylinder& c = a.cylinder;
+    for (float* value : {&c.circle.centre.x(), &c.circle.centre.y(), &c.circle.radius, &c.velocity.x(), &c.velocity.y(),
+                         &c.bottom, &c.top, &c.margin}) {
+        *value = number<float>();
+    }
+    a.stamp.us = number<std::int64_t>();
+    a.ends.us = number<std::int64_t>();
+    if (number<std::uint8_t>() != 0) {
+        link::GlobalPosition about;
+        about.lat = number<decltype(about.lat)>();
+        about.lon = number<decltype(about.lon)>();
+        about.alt = number<decltype(about.alt)>();
+        a.about = about;
+    }
+    return a;
+}
+
+void EntryReader::health(Health& numbers) noexcept
+{
+    const auto differs = number<std::uint16_t>();
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        if ((differs >> i & 1U) != 0) {
+            numbers[i] += count();
+        }
+    }
+}
+
+}  // namespace jink::flightlog

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace jink::flightlog {
+
+/// Counters of losses and failures of a log.
+struct LogCounts {
+    std::uint32_t messages = 0;        ///< accepted
+    std::uint32_t dropped = 0;         ///< whole messages that found the queue full, or were too large
+    std::uint32_t write_failures = 0;  ///< of files: not created, not written, not synchronised
+    std::uint32_t files = 0;           ///< begun
+    std::uint32_t peak = 0;            ///< greatest number of bytes in the queue
+};
+
+/// Takes whole messages of the data section, one after the other. Never waits.
+class Output {
+public:
+    /// False: dropped, and counted.
+    virtual bool add(std::span<const std::byte> message) noexcept = 0;
+    /// A message that could not be composed.
+    virtual void lose() noexcept = 0;
+    [[nodiscard]] virtual LogCounts counts() const noexcept = 0;
+
+protected:
+    ~Output() = default;
+};
+
+}  // namespace jink::flightlog

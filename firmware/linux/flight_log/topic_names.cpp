@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <utility>
+
+#include "firmware/linux/flight_log/topics.hpp"
+
+namespace jink::flightlog {
+
+std::string_view name_of(app::Control control) noexcept
+{
+    switch (control) {
+    case app::Control::autopilot: return "autopilot";
+    case app::Control::announcing: return "announcing";
+    case app::Control::requesting: return "requesting";
+    case app::Control::ours: return "ours";
+    case app::Control::returning: return "returning";
+    case app::Control::refused: return "refused";
+    case app::Control::overruled: return "overruled";
+    }
+    return "?";
+}
+
+std::string_view name_of(link::SystemState state) noexcept
+{
+    switch (state) {
+    case link::SystemState::boot: return "boot";
+    case link::SystemState::standby: return "standby";
+    case link::SystemState::active: return "active";
+    case link::SystemState::critical: return "critical";
+    case link::SystemState::emergency: return "emergency";
+    }
+    return "?";
+}
+
+std::string_view name_of(avoid::State state) noexcept
+{
+    switch (state) {
+    case avoid::State::watching: return "watching";
+    case avoid::State::avoiding: return "avoiding";
+    case avoid::State::rejoining: return "rejoining";
+    case avoid::State::braking: return "braking";
+    }
+    return "?";
+}
+
+std::string_view name_of(world::ManoeuvreKind kind) noexcept
+{
+    switch (kind) {
+    case world::ManoeuvreKind::follow_path: return "follow path";
+    case world::ManoeuvreKind::velocity: return "velocity";
+    case world::ManoeuvreKind::brake: return "brake";
+    case world::ManoeuvreKind::hold_turn: return "hold turn";
+    }
+    return "?";
+}
+
+std::string_view name_of(world::PlanStatus status) noexcept
+{
+    switch (status) {
+    case world::PlanStatus::found: return "found";
+    case world::PlanStatus::no_conflict: return "no conflict";
+    case world::PlanStatus::too_close: return "too close";
+    case world::PlanStatus::none_available: return "none available";
+    case world::PlanStatus::budget_spent: return "budget spent";
+    case world::PlanStatus::bad_input: return "bad input";
+    case world::PlanStatus::running: return "running";
+    }
+    return "?";
+}
+
+std::string_view name_of(world::ThreatKind kind) noexcept
+{
+    switch (kind) {
+    case world::ThreatKind::none: return "none";
+    case world::ThreatKind::track: return "track";
+    case world::ThreatKind::obstacle: return "obstacle";
+    case world::ThreatKind::floor: return "floor";
+    case world::ThreatKind::ceiling: return "ceiling";
+    case world::ThreatKind::keep_in: return "keep in";
+    case world::ThreatKind::cylinder: return "cylinder";
+    }
+    return "?";
+}
+
+std::string_view name_of(geometric::CandidateStatus status) noexcept
+{
+    switch (status) {
+    case geometric::CandidateStatus::available: return "available";
+    case geometric::CandidateStatus::chosen: return "chosen";
+    case geometric::CandidateStatus::hits_static: return "hits static";
+    case geometric::CandidateStatus::hits_moving: return "hits moving";
+    case geometric::CandidateStatus::hits_airspace: return "hits airspace";
+    case geometric::CandidateStatus::not_flyable: return "not flyable";
+    case geometric::CandidateStatus::not_evaluated: return "not evaluated";
+    }
+    return "?";
+}
+
+std::string names_of_faults(std::uint16_t faults)
+{
+    using app::Fault;
+    constexpr std::array kNames = std::to_array<std::pair<Fault, std::string_view>>({
+        {Fault::no_autopilot, "no autopilot"},
+        {Fault::autopilot_silent, "autopilot silent"},
+        {Fault::own_state_missing, "own state missing"},
+        {Fault::own_state_stale, "own state stale"},
+        {Fault::port_lost, "port lost"},
+        {Fault::late, "late"},
+        {Fault::not_finite, "not finite"},
+        {Fault::passive, "passive"},
+        {Fault::bus_lost, "bus lost"},
+        {Fault::airspace_unplaced, "airspace unplaced"},
+        {Fault::map_unresolved, "map unresolved"},
+    });
+    std::string text;
+    for (const auto& [fault, name] : kNames) {
+        if ((faults & app::bit(fault)) != 0) {
+            text += (text.empty() ? "" : ", ") + std::string(name);
+        }
+    }
+    return text.empty() ? "none" : text;
+}
+
+}  // namespace jink::flightlog

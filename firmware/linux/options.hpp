@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "firmware/linux/housekeeping.hpp"
+#include "firmware/linux/logging.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace jink::host {
+
+/// The command line of jinkd.
+struct Options {
+    std::string serial;
+    std::string link;
+    std::string can;
+    std::string cloud;
+    std::string vehicle_file;
+    std::string param_file;
+    std::string state_file;
+    std::string airspace_file;
+    std::string map_file;
+    SigningFiles signing;
+    LogOptions log;
+    std::string watchdog;
+    std::string summary;
+    double status_period = 1.0;
+    unsigned clock = 0;  ///< of the processor [MHz]; 0: not said
+    int system_id = 0;
+    int node_id = 0;
+    int realtime = 0;
+    bool quiet = false;
+};
+
+inline constexpr const char* kAbout =
+    "jinkd: collision avoidance beside a PX4 or ArduPilot autopilot, over MAVLink on a serial line, with\n"
+    "sensors and traffic on a DroneCAN bus, or over MAVLink through that bus. Runs until SIGTERM or SIGINT.";
+void add_options(CLI::App& cli, Options& options);
+
+}  // namespace jink::host
