@@ -17,11 +17,12 @@ void add_options(CLI::App& cli, Options& options)
                    "udpout:ADDRESS:PORT sends there, tcp:ADDRESS:PORT connects; serial:DEV[:BAUD] is --serial. "
                    "Without ADDRESS: this machine alone")
         ->excludes(serial);
-    CLI::Option* const can = cli.add_option("--can", options.can,
-                                            "CAN interface with a DroneCAN bus; without --serial and --link MAVLink goes through "
-                                            "it. Its bit rate and queue are set by\n"
-                                            "the system, not here: ip link set can0 type can bitrate 1000000 "
-                                            "restart-ms 100; ip link set can0 txqueuelen 128 up");
+    CLI::Option* const can =
+        cli.add_option("--can", options.can,
+                       "CAN interface with a DroneCAN bus; without --serial and --link MAVLink goes through "
+                       "it. Its bit rate and queue are set by\n"
+                       "the system, not here: ip link set can0 type can bitrate 1000000 "
+                       "restart-ms 100; ip link set can0 txqueuelen 128 up");
     cli.add_option("--node-id", options.node_id, "DroneCAN node id, 1 to 127; 0: asks the bus for one")
         ->check(CLI::Range(0, 127))
         ->needs(can);
