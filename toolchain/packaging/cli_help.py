@@ -73,6 +73,8 @@ def parse(text, path):
         elif section == "Subcommands" and (found := NAMED.fullmatch(line)):
             names.append(found[1])
             entry = None
+        elif section == "Subcommands" and names and line.startswith(" " * COLUMN):
+            continue  # a text with a line break of its own; its own help has it
         elif line.strip() and not (entry is not None and entry.text):
             raise ValueError(f"{' '.join(path)} --help: not understood: {line!r}")
         elif line.strip() and entry is not None:  # a text with a line break of its own
