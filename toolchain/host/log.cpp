@@ -155,8 +155,9 @@ void add_log(CLI::App& jink)
 {
     auto command = std::make_shared<LogCommand>();
     CLI::App* log = jink.add_subcommand(
-        "log", "flight logs of jinkd (ULog): a summary, tables, or a replay; exit status of a replay: 0: bit for bit the "
-               "same, 1: different, 2: it cannot begin");
+        "log",
+        "flight logs of jinkd (ULog): a summary, tables, or a replay; exit status of a replay: 0: bit for bit the "
+        "same, 1: different, 2: it cannot begin");
     log->add_option("files", command->files, "logs; of a replay the files of one run in their order")->required();
     CLI::Option* const csv = log->add_option("--csv", command->csv, "write one table (CSV) per topic to this folder");
     CLI::Option* const replay_flag =
