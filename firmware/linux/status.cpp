@@ -6,45 +6,10 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "firmware/linux/flight_log/topics.hpp"
+
 namespace jink::host {
 namespace {
-
-const char* name_of(link::SystemState state)
-{
-    switch (state) {
-    case link::SystemState::boot: return "boot";
-    case link::SystemState::standby: return "standby";
-    case link::SystemState::active: return "active";
-    case link::SystemState::critical: return "CRITICAL";
-    case link::SystemState::emergency: return "EMERGENCY";
-    }
-    return "?";
-}
-
-const char* name_of(app::Control control)
-{
-    switch (control) {
-    case app::Control::autopilot: return "autopilot";
-    case app::Control::announcing: return "announcing";
-    case app::Control::requesting: return "requesting";
-    case app::Control::ours: return "ours";
-    case app::Control::returning: return "returning";
-    case app::Control::refused: return "refused";
-    case app::Control::overruled: return "overruled";
-    }
-    return "?";
-}
-
-const char* name_of(avoid::State state)
-{
-    switch (state) {
-    case avoid::State::watching: return "watching";
-    case avoid::State::avoiding: return "avoiding";
-    case avoid::State::rejoining: return "rejoining";
-    case avoid::State::braking: return "braking";
-    }
-    return "?";
-}
 
 const char* name_of(hal::PortState state)
 {
@@ -155,9 +120,9 @@ std::string status_line(const app::StepReport& report, const Watched& watched, s
         size = std::min(size + static_cast<std::size_t>(std::max(n, 0)), text.size() - 1);
     };
     const avoid::Guidance& g = report.guidance;
-    add("%-9s port %-6s control %-10s %-9s tracks %2u obstacles %2u ", name_of(report.state),
-        name_of(watched.port.health().state), name_of(report.control), name_of(g.state), report.tracks,
-        report.obstacles);
+    add("%-9s port %-6s control %-10s %-9s tracks %2u obstacles %2u ", flightlog::name_of(report.state).data(),
+        name_of(watched.port.health().state), flightlog::name_of(report.control).data(),
+        flightlog::name_of(g.state).data(), report.tracks, report.obstacles);
     if (report.uncertain_heights > 0) {
         add("heights uncertain %2u ", report.uncertain_heights);
     }

@@ -186,7 +186,7 @@ template <class T>
 [[nodiscard]] StepTopic step_topic(const app::StepReport& report, TimePoint now, std::uint32_t conflict_id) noexcept;
 [[nodiscard]] CandidateTopic candidate_topic(const geometric::Candidate& candidate) noexcept;
 
-// Names of numbers in topics, as docs/guides/flight_log.md prints them; "?" for none.
+// Names of numbers in topics and in the status line; "?" for none. Each ends with a zero byte.
 [[nodiscard]] std::string_view name_of(app::Control control) noexcept;
 [[nodiscard]] std::string_view name_of(link::SystemState state) noexcept;
 [[nodiscard]] std::string_view name_of(avoid::State state) noexcept;
