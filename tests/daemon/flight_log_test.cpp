@@ -155,19 +155,22 @@ TEST_F(DaemonFlightLog, AKillLosesASecondAtMost)
     EXPECT_NE(out.find("bit-identical, as far as the log goes"), std::string::npos) << out;
 }
 
-TEST_F(DaemonFlightLog, SeveralFilesOfOneRunReplayTogether)
+TEST_F(DaemonFlightLog, OldLogsAreRemovedAndNothingElse)
 {
-    std::ofstream(folder / "jink_20200101_000000_000.ulg") << "an old log";
+    for (const char* year : {"2018", "2019", "2020"}) {
+        std::ofstream(folder / (std::string("jink_") + year + "0101_000000_000.ulg")) << "an old log";
+    }
     std::ofstream(folder / "notes.txt") << "not a log";
     {
         sim::Plant plant(scenario);
         Daemon daemon(arguments({"--log-size", "1", "--log-count", "2"}), scratch / "said");
-        // 1 MB is not reached in seconds: a limit on the files' size does the same.
         fly(plant, milliseconds(2'500));
         daemon.signal(SIGTERM);
         ASSERT_EQ(daemon.wait(kPatience), 0) << text_of(scratch / "said");
     }
-    EXPECT_EQ(logs().size(), 3U) << "two logs are kept, and what is no log";
+    EXPECT_EQ(logs().size(), 3U) << "the new log, the newest of the old ones, and what is no log";
+    EXPECT_TRUE(fs::exists(folder / "jink_20200101_000000_000.ulg"));
+    EXPECT_TRUE(fs::exists(folder / "notes.txt"));
 }
 
 TEST_F(DaemonFlightLog, AFolderThatIsMissingIsSaidOnceAndHarmsNothing)
