@@ -51,9 +51,9 @@ struct BadMap : std::runtime_error {
 };
 
 /// Reads past the end as an error, once and for all.
-class Reader {
+class MapReader {
 public:
-    explicit Reader(std::string_view text) : text_(text) {}
+    explicit MapReader(std::string_view text) : text_(text) {}
 
     std::uint16_t u16()
     {
@@ -98,7 +98,7 @@ private:
     std::string_view text_;
 };
 
-void read_head(Reader& in, MapTables& map)
+void read_head(MapReader& in, MapTables& map)
 {
     map.version = in.u16();
     if (map.version != geometry::kMeshVersion) {
@@ -117,7 +117,7 @@ void read_head(Reader& in, MapTables& map)
     map.high = in.point();
 }
 
-void read_tables(Reader& in, MapTables& map)
+void read_tables(MapReader& in, MapTables& map)
 {
     map.pieces.resize(in.count(kPieceBytes));
     map.vertices.resize(in.count(kVertexBytes));
@@ -200,7 +200,7 @@ std::string map_file_of(const MeshMap& map)
 std::optional<MapTables> parse_map(std::string_view text, const std::string& file, Complaints& complaints)
 {
     try {
-        Reader in(text);
+        MapReader in(text);
         if (text.size() < kMagic.size() || in.text(kMagic.size()) != kMagic) {
             throw BadMap("not a map file: jink mesh build makes them");
         }

@@ -275,16 +275,16 @@ TEST(LogQueue, DropsWholeMessagesAndTellsForHowLong)
     message[0] = std::byte{17};
     message[2] = std::byte{'D'};
     for (int i = 0; i < 3; ++i) {
-        EXPECT_TRUE(queue.add(message, 1'000'000));
+        EXPECT_TRUE(queue.add(message, 1'000'000, 1));
     }
-    EXPECT_FALSE(queue.add(message, 2'000'000));
-    EXPECT_FALSE(queue.add(message, 2'500'000));
-    EXPECT_EQ(queue.dropped(), 2U);
+    EXPECT_FALSE(queue.add(message, 2'000'000, 1));
+    EXPECT_FALSE(queue.add(message, 2'500'000, 2)) << "two messages of ten bytes";
+    EXPECT_EQ(queue.dropped(), 3U);
     EXPECT_EQ(queue.messages(), 3U);
     std::array<std::byte, 64> out{};
     EXPECT_EQ(queue.take(std::span(out).first(30)), 30U) << "in any pieces";
     EXPECT_EQ(queue.take(out), 30U);
-    EXPECT_TRUE(queue.add(message, 4'250'000));
+    EXPECT_TRUE(queue.add(message, 4'250'000, 1));
     ASSERT_EQ(queue.take(out), 25U);
     EXPECT_EQ(static_cast<char>(out[2]), 'O');
     EXPECT_EQ(ulog::read_number<std::uint16_t>(std::span(out).subspan(3)), 2'250) << "milliseconds";
@@ -334,7 +334,7 @@ TEST(LogWriter, AStalledDiskNeverDelaysTheLoop)
     while (writer.counts().dropped < 1'000) {
         const std::size_t n = 3U + ulog::read_number<std::uint16_t>(data);
         writer.set_time(now += 20'000);
-        writer.add(data.first(n));
+        writer.add(data.first(n), 1);
         ++given;
         data = n < data.size() ? data.subspan(n) : flown().data();
         if (given == 2'000) {  // the thread is at the disk before the queue is full
@@ -362,7 +362,7 @@ TEST(LogWriter, AStalledDiskDoesNotHoldUpTheEnd)
     {
         Writer writer({"folder"}, definitions_of(plain_setup()), std::make_unique<StalledDisk>(gate), 1U << 20U);
         const std::span<const std::byte> data = flown().data();
-        writer.add(data.first(whole_messages(data, 1'000)));
+        writer.add(data.first(whole_messages(data, 1'000)), 1);
         while (gate->calls == 0) {
             std::this_thread::yield();
         }

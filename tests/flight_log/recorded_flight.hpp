@@ -35,10 +35,10 @@ public:
         : bytes_(flightlog::head_of_file(flightlog::definitions_of(setup), 0, "jink_test", 0))
     {
     }
-    bool add(std::span<const std::byte> message) noexcept override
+    bool add(std::span<const std::byte> messages, std::uint32_t count) noexcept override
     {
-        bytes_.insert(bytes_.end(), message.begin(), message.end());
-        ++counts_.messages;
+        bytes_.insert(bytes_.end(), messages.begin(), messages.end());
+        counts_.messages += count;
         return true;
     }
     void lose() noexcept override { ++counts_.dropped; }

@@ -59,19 +59,24 @@ FlightLog::FlightLog(Output& output, const Limits& limits, const files::ParamVal
 {
 }
 
+void FlightLog::flush() noexcept
+{
+    output_.add(std::span(messages_).first(size_), count_);
+    size_ = 0;
+    count_ = 0;
+}
+
 template <class T>
 void FlightLog::put(TopicId id, const T& topic) noexcept
 {
-    output_.add(ulog::Composer(message_)
-                    .begin(ulog::Type::data)
-                    .put(static_cast<std::uint16_t>(id))
-                    .put_bytes(content_of(topic))
-                    .end());
+    ulog::Composer message = data(id);
+    keep(message.put_bytes(content_of(topic)));
 }
 
 void FlightLog::put_text(ulog::Level level, TimePoint now, std::string_view text) noexcept
 {
-    output_.add(ulog::Composer(message_).begin(ulog::Type::text).put(level).put(stamp_of(now)).put_text(text).end());
+    ulog::Composer line = message(ulog::Type::text);
+    keep(line.put(level).put(stamp_of(now)).put_text(text));
 }
 
 /// Cuts the record into parts; each is a message of the smallest size that holds it.
@@ -87,14 +92,13 @@ void FlightLog::put_record(TimePoint now) noexcept
     while (!rest.empty()) {
         const std::size_t n = std::min<std::size_t>(rest.size(), kHalSizes.back());
         const auto* const size = std::lower_bound(kHalSizes.begin(), kHalSizes.end(), n);
-        const auto id = static_cast<std::uint16_t>(static_cast<std::size_t>(TopicId::hal) +
-                                                   static_cast<std::size_t>(size - kHalSizes.begin()));
+        const auto id =
+            static_cast<TopicId>(static_cast<std::ptrdiff_t>(TopicId::hal) + std::distance(kHalSizes.begin(), size));
         const bool goes_on = n < rest.size();
         const HalHead head{stamp_of(now), sequence_++, static_cast<std::uint16_t>(n),
                            goes_on ? HalHead::kGoesOn : std::uint16_t{0}};
-        ulog::Composer message(message_);
-        message.begin(ulog::Type::data).put(id).put(head).put_bytes(rest.first(n));
-        output_.add(message.fill(*size - n).end());
+        ulog::Composer part = data(id);
+        keep(part.put(head).put_bytes(rest.first(n)).fill(*size - n));
         rest = rest.subspan(n);
     }
     recorder_.clear();
@@ -130,17 +134,16 @@ void FlightLog::put_tracks(app::Coprocessor& coprocessor, TimePoint now) noexcep
 
 void FlightLog::put_counters(const app::Coprocessor& coprocessor, TimePoint now) noexcept
 {
-    ulog::Composer message(message_);
-    message.begin(ulog::Type::data).put(TopicId::app_counters).put(stamp_of(now));
+    ulog::Composer of_app = data(TopicId::app_counters).put(stamp_of(now));
     for (const auto& counter : app_counters()) {
-        message.put(coprocessor.diagnostics().*counter.member);
+        of_app.put(coprocessor.diagnostics().*counter.member);
     }
-    output_.add(message.end());
-    message.begin(ulog::Type::data).put(TopicId::avoid_counters).put(stamp_of(now));
+    keep(of_app);
+    ulog::Composer of_avoid = data(TopicId::avoid_counters).put(stamp_of(now));
     for (const auto& counter : avoid_counters()) {
-        message.put(coprocessor.supervisor_diagnostics().*counter.member);
+        of_avoid.put(coprocessor.supervisor_diagnostics().*counter.member);
     }
-    output_.add(message.end());
+    keep(of_avoid);
     const LogCounts counts = output_.counts();
     put(TopicId::log,
         LogTopic{stamp_of(now), counts.messages, counts.dropped, counts.write_failures, counts.files, counts.peak});
@@ -180,9 +183,9 @@ void FlightLog::put_changes(const app::StepReport& report, std::uint32_t id, Tim
         put_text(ulog::Level::notice, now, line.view());
     }
     const avoid::Guidance& g = report.guidance;
-    if (g.new_manoeuvre || g.state != last_.guidance.state) {
+    if (g.new_manoeuvre || g.state != last_.guidance) {
         Line line;
-        line.add("guidance ").add_name(name_of(last_.guidance.state)).add(" -> ").add_name(name_of(g.state));
+        line.add("guidance ").add_name(name_of(last_.guidance)).add(" -> ").add_name(name_of(g.state));
         line.add(g.new_manoeuvre ? ", new manoeuvre " : ", ").add_name(name_of(g.kind));
         line.add(" by method %u, margin %.2f m, cost %.3f: ", g.by, static_cast<double>(g.margin),
                  static_cast<double>(g.cost));
@@ -207,10 +210,9 @@ void FlightLog::put_changed_parameters(const app::Parameters& parameters) noexce
         parameters_[i] = value;
         const app::ParamInfo& info = app::param_table()[i];
         const std::string_view type = info.integer ? "int32_t " : "float ";
-        ulog::Composer message(message_);
-        message.begin(ulog::Type::parameter).put(static_cast<std::uint8_t>(type.size() + info.name.size()));
-        message.put_text(type).put_text(info.name);
-        output_.add(info.integer ? message.put(static_cast<std::int32_t>(value)).end() : message.put(value).end());
+        ulog::Composer change = message(ulog::Type::parameter);
+        change.put(static_cast<std::uint8_t>(type.size() + info.name.size())).put_text(type).put_text(info.name);
+        keep(info.integer ? change.put(static_cast<std::int32_t>(value)) : change.put(value));
     }
 }
 
@@ -241,7 +243,8 @@ void FlightLog::end(const app::StepReport& report, app::Coprocessor& coprocessor
         put_counters(coprocessor, began);
         counters_due_ = began.us + kCounterPeriod;
     }
-    last_ = report;
+    last_ = {report.state, report.faults, report.control, report.guidance.state};
+    flush();
 }
 
 void FlightLog::end_shut_down(TimePoint now) noexcept
@@ -249,6 +252,7 @@ void FlightLog::end_shut_down(TimePoint now) noexcept
     put_record(now);
     put_sent_texts(now);
     put_text(ulog::Level::info, now, "jinkd stops");
+    flush();
 }
 
 }  // namespace jink::flightlog

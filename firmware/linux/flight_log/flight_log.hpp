@@ -21,7 +21,7 @@ namespace jink::flightlog {
 /// The control loop's side of a flight log: composes what a step did and gives it to an output. Never waits, and
 /// allocates nothing after its construction.
 ///
-/// Memory: the largest record of a step (Limits) and 70 KiB.
+/// Memory: the largest record of a step (Limits) and 80 KiB.
 class FlightLog {
 public:
     struct Limits {
@@ -53,6 +53,24 @@ private:
     static constexpr std::int64_t kTrackPeriod = 200'000;      ///< [us]
     static constexpr std::int64_t kCounterPeriod = 1'000'000;  ///< [us]
 
+    /// A new message of kMaxMessage at most, to be given to `keep`.
+    [[nodiscard]] ulog::Composer message(ulog::Type type) noexcept
+    {
+        if (messages_.size() - size_ < kMaxMessage) {
+            flush();
+        }
+        return ulog::Composer(std::span(messages_).subspan(size_, kMaxMessage)).begin(type);
+    }
+    [[nodiscard]] ulog::Composer data(TopicId id) noexcept
+    {
+        return message(ulog::Type::data).put(static_cast<std::uint16_t>(id));
+    }
+    void keep(ulog::Composer& message) noexcept
+    {
+        size_ += message.end().size();
+        ++count_;
+    }
+    void flush() noexcept;
     template <class T>
     void put(TopicId id, const T& topic) noexcept;
     void put_text(ulog::Level level, TimePoint now, std::string_view text) noexcept;
@@ -67,7 +85,10 @@ private:
 
     Output& output_;
     HalRecorder recorder_;
-    std::array<std::byte, ulog::kMessageHeader + HalHead::kBytes + 4096 + 16> message_{};
+    static constexpr std::size_t kMaxMessage = ulog::kDataHeader + HalHead::kBytes + kHalSizes.back();
+    std::array<std::byte, 4 * kMaxMessage> messages_{};  ///< of this step, not yet given to the output
+    std::size_t size_ = 0;                               ///< of them [bytes]
+    std::uint32_t count_ = 0;
     files::ParamValues parameters_;
     std::uint32_t generation_ = 0;
     bool has_generation_ = false;
@@ -77,7 +98,14 @@ private:
     std::int64_t own_stamp_ = -1;
     std::int64_t tracks_due_ = 0;
     std::int64_t counters_due_ = 0;
-    app::StepReport last_;
+    /// Of the step before: their changes are logged as texts.
+    struct Last {
+        link::SystemState state = app::StepReport().state;
+        std::uint16_t faults = 0;
+        app::Control control = app::StepReport().control;
+        avoid::State guidance = avoid::Guidance().state;
+    };
+    Last last_;
 };
 
 }  // namespace jink::flightlog

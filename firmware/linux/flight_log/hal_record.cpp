@@ -2,7 +2,6 @@
 #include "firmware/linux/flight_log/hal_record.hpp"
 
 #include <algorithm>
-#include <cstring>
 
 namespace jink::flightlog {
 namespace {
@@ -23,18 +22,6 @@ hal::CanHealth to_can_health(const Health& n) noexcept
 {
     return {
         static_cast<hal::CanState>(n[0]), n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9], n[10], n[11], n[12]};
-}
-
-void EntryWriter::bytes(std::span<const std::byte> bytes) noexcept
-{
-    if (bytes.size() > bytes_.size() - size_) {
-        overflowed_ = true;
-        return;
-    }
-    if (!bytes.empty()) {
-        std::memcpy(bytes_.data() + size_, bytes.data(), bytes.size());
-        size_ += bytes.size();
-    }
 }
 
 void EntryWriter::frame(const hal::CanFrame& f) noexcept
@@ -65,19 +52,18 @@ void EntryWriter::area(const app::Constraint& a) noexcept
 
 void EntryWriter::health(const Health& before, const Health& now) noexcept
 {
+    const std::size_t mask = size_;
+    put(std::uint16_t{0});
     unsigned differs = 0;
-    std::array<std::uint64_t, kHealthNumbers> differences{};
-    std::size_t n = 0;
-    for (std::size_t i = 0; i < now.size(); ++i) {
-        if (now[i] != before[i]) {
+    for (std::size_t i = 0; i < kHealthNumbers; ++i) {
+        if (now[i] != before[i]) [[unlikely]] {
             differs |= 1U << i;
-            differences[n++] = now[i] - before[i];  // modulo 2^64: a counter that is smaller takes ten bytes
+            count(now[i] - before[i]);  // modulo 2^64: a counter that is smaller takes ten bytes
         }
     }
-    byte(differs & 0xFFU);
-    byte(differs >> 8U);
-    for (std::size_t i = 0; i < n; ++i) {
-        count(differences[i]);
+    if (!overflowed_) {
+        bytes_[mask] = static_cast<std::byte>(differs & 0xFFU);
+        bytes_[mask + 1] = static_cast<std::byte>(differs >> 8U);
     }
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <optional>
 #include <span>
 #include <vector>
@@ -96,7 +97,15 @@ public:
         }
         byte(static_cast<unsigned>(value));
     }
-    void bytes(std::span<const std::byte> bytes) noexcept;
+    void bytes(std::span<const std::byte> bytes) noexcept
+    {
+        if (bytes.size() > bytes_.size() - size_) {
+            overflowed_ = true;
+        } else if (!bytes.empty()) {
+            std::memcpy(bytes_.data() + size_, bytes.data(), bytes.size());
+            size_ += bytes.size();
+        }
+    }
     template <class T>
     void put(T value) noexcept
     {

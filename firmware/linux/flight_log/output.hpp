@@ -19,8 +19,9 @@ struct LogCounts {
 /// Takes whole messages of the data section, one after the other. Never waits.
 class Output {
 public:
-    /// False: dropped, and counted.
-    virtual bool add(std::span<const std::byte> message) noexcept = 0;
+    /// @param messages  whole ones, `count` of them
+    /// @return false: all dropped, and counted
+    virtual bool add(std::span<const std::byte> messages, std::uint32_t count) noexcept = 0;
     /// A message that could not be composed.
     virtual void lose() noexcept = 0;
     [[nodiscard]] virtual LogCounts counts() const noexcept = 0;

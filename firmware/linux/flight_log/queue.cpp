@@ -19,21 +19,21 @@ void Queue::copy_in(std::uint64_t at, std::span<const std::byte> bytes) noexcept
     }
 }
 
-void Queue::lose(std::int64_t now_us) noexcept
+void Queue::lose(std::int64_t now_us, std::uint32_t count) noexcept
 {
-    dropped_.store(dropped_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+    dropped_.store(dropped_.load(std::memory_order_relaxed) + count, std::memory_order_relaxed);
     dropping_since_ = is_dropping_ ? dropping_since_ : now_us;
     is_dropping_ = true;
 }
 
-bool Queue::add(std::span<const std::byte> message, std::int64_t now_us) noexcept
+bool Queue::add(std::span<const std::byte> messages, std::int64_t now_us, std::uint32_t count) noexcept
 {
     constexpr std::size_t kDropout = ulog::kMessageHeader + 2;
     const std::uint64_t head = head_.load(std::memory_order_relaxed);
     const auto used = static_cast<std::size_t>(head - tail_.load(std::memory_order_acquire));
-    const std::size_t wanted = message.size() + (is_dropping_ ? kDropout : 0U);
+    const std::size_t wanted = messages.size() + (is_dropping_ ? kDropout : 0U);
     if (wanted > bytes_.size() - used) {
-        lose(now_us);
+        lose(now_us, count);
         return false;
     }
     std::uint64_t at = head;
@@ -44,9 +44,9 @@ bool Queue::add(std::span<const std::byte> message, std::int64_t now_us) noexcep
         at += kDropout;
         is_dropping_ = false;
     }
-    copy_in(at, message);
-    head_.store(at + message.size(), std::memory_order_release);
-    ++messages_;
+    copy_in(at, messages);
+    head_.store(at + messages.size(), std::memory_order_release);
+    messages_ += count;
     peak_ = std::max(peak_, static_cast<std::uint32_t>(used + wanted));
     return true;
 }

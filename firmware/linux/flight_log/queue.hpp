@@ -10,16 +10,16 @@
 namespace jink::flightlog {
 
 /// Queue of whole messages from one writer, the control loop, to one reader, the thread that writes files. Neither side
-/// waits. A message that does not fit is dropped; before the next one that fits a ULog dropout message is put, whose
-/// duration is the time without messages. Memory: `capacity`, once.
+/// waits. Messages that do not fit together are dropped; before the next one that fits a ULog dropout message is put,
+/// whose duration is the time without messages. Memory: `capacity`, once.
 class Queue {
 public:
     /// @param capacity  a power of two [bytes]
     explicit Queue(std::size_t capacity) : bytes_(capacity) {}
 
-    /// Writer. O(message).
-    bool add(std::span<const std::byte> message, std::int64_t now_us) noexcept;
-    void lose(std::int64_t now_us) noexcept;
+    /// Writer. @param messages  whole ones, `count` of them. O(bytes).
+    bool add(std::span<const std::byte> messages, std::int64_t now_us, std::uint32_t count) noexcept;
+    void lose(std::int64_t now_us, std::uint32_t count) noexcept;
     [[nodiscard]] std::uint32_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
     [[nodiscard]] std::uint32_t messages() const noexcept { return messages_; }
     [[nodiscard]] std::uint32_t peak() const noexcept { return peak_; }

@@ -8,17 +8,15 @@
 namespace jink::flightlog {
 namespace {
 
-constexpr std::byte kMagic{0xFD};
 constexpr std::size_t kLength = 1;     ///< of the payload
 constexpr std::size_t kFlags = 2;      ///< incompatible ones: 1, signed, is the only one there is
 constexpr std::size_t kMessageId = 7;  ///< three bytes
 constexpr std::size_t kMaxPayload = 42;
-constexpr std::size_t kChecksum = 2;
 
 /// @param header  ten bytes
 bool is_setup_signing(const std::byte* header)
 {
-    return header[0] == kMagic && static_cast<std::size_t>(header[kLength]) <= kMaxPayload &&
+    return header[0] == link::mavlink::kStartV2 && static_cast<std::size_t>(header[kLength]) <= kMaxPayload &&
            static_cast<unsigned>(header[kFlags]) <= 1U && header[kMessageId] == std::byte{0} &&
            header[kMessageId + 1] == std::byte{1} && header[kMessageId + 2] == std::byte{0};
 }
@@ -72,22 +70,22 @@ bool KeyEraser::erase(std::span<std::byte> bytes) noexcept
     if (const std::size_t rest = std::exchange(secret_, 0); rest > 0) {
         wipe(0, rest);
     }
-    const bool may_go_on = std::memchr(tail_.data(), static_cast<int>(kMagic), kTail) != nullptr;
+    const bool may_go_on = std::memchr(tail_.data(), static_cast<int>(link::mavlink::kStartV2), kTail) != nullptr;
     for (std::size_t i = 0; may_go_on && i + kHeader <= kTail + head; ++i) {  // frames that began in the reads before
         if (is_setup_signing(joint.data() + i)) {
-            wipe(i + kHeader - kTail, static_cast<std::size_t>(joint[i + kLength]) + kChecksum);
+            wipe(i + kHeader - kTail, static_cast<std::size_t>(joint[i + kLength]) + link::mavlink::kChecksumSize);
         }
     }
     // The first of these begin in this read.
     for (std::size_t i = 0; i + kHeader <= bytes.size();) {
         const void* const found =
-            std::memchr(bytes.data() + i, static_cast<int>(kMagic), bytes.size() - i - kHeader + 1);
+            std::memchr(bytes.data() + i, static_cast<int>(link::mavlink::kStartV2), bytes.size() - i - kHeader + 1);
         if (found == nullptr) {
             break;
         }
         i = static_cast<std::size_t>(static_cast<const std::byte*>(found) - bytes.data());
         if (is_setup_signing(bytes.data() + i)) {
-            wipe(i + kHeader, static_cast<std::size_t>(bytes[i + kLength]) + kChecksum);
+            wipe(i + kHeader, static_cast<std::size_t>(bytes[i + kLength]) + link::mavlink::kChecksumSize);
         }
         ++i;
     }

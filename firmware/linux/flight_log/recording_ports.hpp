@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <span>
 
+#include "firmware/link/mavlink/frame.hpp"
 #include "firmware/linux/flight_log/hal_record.hpp"
 #include "firmware/linux/flight_log/sent_texts.hpp"
 #include "hal/can_port.hpp"
@@ -21,7 +22,8 @@ public:
     [[nodiscard]] bool erase(std::span<std::byte> bytes) noexcept;
 
 private:
-    static constexpr std::size_t kHeader = 10;  ///< of MAVLink 2; version 1 cannot carry this message
+    /// Version 1 cannot carry this message.
+    static constexpr std::size_t kHeader = link::mavlink::kHeaderV2;
 
     std::array<std::byte, kHeader - 1> tail_{};  ///< of the reads before
     std::size_t secret_ = 0;                     ///< bytes of the present frame still to be overwritten

@@ -3,19 +3,20 @@
 
 #include <algorithm>
 
+#include "firmware/link/mavlink/frame.hpp"
+
 namespace jink::flightlog {
 namespace {
 
-constexpr std::byte kMagic{0xFD};
-constexpr std::size_t kHeader = 10;
-constexpr std::size_t kChecksum = 2;
-constexpr std::size_t kSignature = 13;
+using link::mavlink::kHeaderV2;
+
 constexpr std::byte kStatustext{253};
 
 std::size_t size_of_frame(std::span<const std::byte> frame)
 {
-    const bool is_signed = (frame[2] & std::byte{1}) != std::byte{0};
-    return kHeader + static_cast<std::size_t>(frame[1]) + kChecksum + (is_signed ? kSignature : 0U);
+    const bool is_signed = (frame[2] & link::mavlink::kFlagSigned) != std::byte{0};
+    return kHeaderV2 + static_cast<std::size_t>(frame[1]) + link::mavlink::kChecksumSize +
+           (is_signed ? link::mavlink::kSignatureSize : 0U);
 }
 
 bool is_text(std::span<const std::byte> frame)
@@ -31,13 +32,14 @@ void SentTexts::note(std::span<const std::byte> offered, std::size_t accepted) n
     std::span<const std::byte> rest = offered.subspan(known);
     std::size_t at = known;
     rest_ -= std::min(rest_, accepted);
-    while (at < accepted && rest.size() >= kHeader && rest.front() == kMagic) {
+    while (at < accepted && rest.size() >= kHeaderV2 && rest.front() == link::mavlink::kStartV2) {
         const std::size_t size = std::min(size_of_frame(rest), rest.size());
-        if (is_text(rest) && rest.size() > kHeader + 1 && count_ < kMaxTexts) {
+        if (is_text(rest) && rest.size() > kHeaderV2 + 1 && count_ < kMaxTexts) {
             Text& text = texts_[count_++];
-            text.severity = static_cast<std::uint8_t>(std::min(static_cast<unsigned>(rest[kHeader]), 7U));
+            text.severity = static_cast<std::uint8_t>(std::min(static_cast<unsigned>(rest[kHeaderV2]), 7U));
             const std::span<const std::byte> chars = rest.subspan(
-                kHeader + 1, std::min({static_cast<std::size_t>(rest[1]) - 1, kMaxLength, rest.size() - kHeader - 1}));
+                kHeaderV2 + 1,
+                std::min({static_cast<std::size_t>(rest[1]) - 1, kMaxLength, rest.size() - kHeaderV2 - 1}));
             const auto end = std::find(chars.begin(), chars.end(), std::byte{0});
             text.length = static_cast<std::uint8_t>(end - chars.begin());
             std::transform(chars.begin(), end, text.text.begin(), [](std::byte b) { return static_cast<char>(b); });

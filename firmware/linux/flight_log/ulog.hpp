@@ -133,9 +133,11 @@ public:
     }
     Composer& put_bytes(std::span<const std::byte> bytes) noexcept
     {
-        const std::size_t n = std::min(bytes.size(), buffer_.size() - size_);
-        std::memcpy(buffer_.data() + size_, bytes.data(), n);
-        size_ += n;
+        if (bytes.size() > buffer_.size() - size_) {
+            bytes = bytes.first(buffer_.size() - size_);
+        }
+        std::memcpy(buffer_.data() + size_, bytes.data(), bytes.size());
+        size_ += bytes.size();
         return *this;
     }
     Composer& put_text(std::string_view text) noexcept { return put_bytes(std::as_bytes(std::span(text))); }

@@ -94,9 +94,12 @@ LogCounts Writer::finish()
     return counts();
 }
 
-bool Writer::add(std::span<const std::byte> message) noexcept { return shared_->queue.add(message, now_us_); }
+bool Writer::add(std::span<const std::byte> messages, std::uint32_t count) noexcept
+{
+    return shared_->queue.add(messages, now_us_, count);
+}
 
-void Writer::lose() noexcept { shared_->queue.lose(now_us_); }
+void Writer::lose() noexcept { shared_->queue.lose(now_us_, 1); }
 
 LogCounts Writer::counts() const noexcept
 {
