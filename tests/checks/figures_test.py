@@ -75,15 +75,19 @@ class OnACopy(unittest.TestCase):
     def tearDownClass(cls):
         cls.folder.cleanup()
 
-    def found_after(self, name, text):
-        """Findings with this file changed that were not found before."""
-        path = self.top / name
-        kept = path.read_bytes()
+    def found_after_all(self, texts):
+        """Findings with these files changed (name: text) that were not found before."""
+        kept = {name: (self.top / name).read_bytes() for name in texts}
         try:
-            path.write_text(text, encoding="utf-8")
+            for name, text in texts.items():
+                (self.top / name).write_text(text, encoding="utf-8")
             return [p for p in figures_check.Book(self.top).all() if str(p) not in self.before]
         finally:
-            path.write_bytes(kept)
+            for name, before in kept.items():
+                (self.top / name).write_bytes(before)
+
+    def found_after(self, name, text):
+        return self.found_after_all({name: text})
 
     def wants(self, page, begin, end, what):
         text = page.text[:begin] + other(page.text[begin:end]) + page.text[end:]
@@ -112,15 +116,21 @@ class OnACopy(unittest.TestCase):
 
     def test_a_changed_sealed_number_on_each_page_is_found(self):
         book = figures_check.Book(self.top)
+        changed, lines = {}, {}
         for page in book.pages.values():
             left = figures_pages.tokens(page, book.covered(page.name))
-            with self.subTest(page=page.name):
-                if not left:
-                    continue
-                line = left[len(left) // 2][1]
-                begins = [m for m in figures_pages.TOKEN.finditer(page.text) if page.line(m.start()) == line and
-                          not any(b <= m.start() < e for b, e in book.covered(page.name))]
-                self.wants(page, *begins[0].span(), "sealed number")
+            if not left:
+                continue
+            line = left[len(left) // 2][1]
+            begin, end = next(m.span() for m in figures_pages.TOKEN.finditer(page.text) if page.line(m.start()) == line and
+                              not any(b <= m.start() < e for b, e in book.covered(page.name)))
+            changed[page.name] = page.text[:begin] + other(page.text[begin:end]) + page.text[end:]
+            lines[page.name] = line
+        self.assertGreater(len(changed), 20)
+        found = self.found_after_all(changed)
+        for name, line in lines.items():
+            with self.subTest(page=name):
+                self.assertTrue(any(p.page == name and p.line == line for p in found), f"{name}:{line}: {texts(found)}")
 
     def test_a_changed_number_of_a_generated_page_is_found(self):
         book = figures_check.Book(self.top)
@@ -213,20 +223,23 @@ class OnACopy(unittest.TestCase):
             registry.write_text(kept, encoding="utf-8")
 
     def test_an_unknown_command_on_each_page_is_found(self):
-        for page in figures_check.Book(self.top).pages.values():
-            with self.subTest(page=page.name):
-                for block in ("```sh\nflies --fast    # a comment\n```\n", "```\njink fly \\\n    faster\n```\n"):
-                    found = [p for p in self.found_after(page.name, page.text + "\n" + block) if "does not know the command" in p.text]
-                    self.assertEqual([p.page for p in found], [page.name])
+        pages = figures_check.Book(self.top).pages.values()
+        for block in ("```sh\nflies --fast    # a comment\n```\n", "```\njink fly \\\n    faster\n```\n"):
+            found = self.found_after_all({page.name: page.text + "\n" + block for page in pages})
+            unknown = [p.page for p in found if "does not know the command" in p.text]
+            self.assertEqual(sorted(unknown), sorted(page.name for page in pages))
 
     def test_a_dated_figure_is_refused_where_the_page_does_not_show_its_commit(self):
         book = figures_check.Book(self.top)
         dated = [c for c in book.registry.commands.values() if c.dated]
         self.assertTrue(dated)
+        changed = {}
         for command in dated:
-            page = book.pages[command.figures[0].page]
-            found = self.found_after(page.name, page.text.replace(f"commit {command.commit}", "some commit"))
-            self.assertTrue(any("does not say that it was recorded on commit" in p.text for p in found), command.name)
+            page = command.figures[0].page
+            changed[page] = changed.get(page, book.pages[page].text).replace(f"commit {command.commit}", "some commit")
+        found = self.found_after_all(changed)
+        for command in dated:
+            self.assertTrue(any(f"{command.name}: the page does not say that it was recorded on commit" in p.text for p in found), command.name)
 
     def test_only_numbers_that_belong_to_no_command_can_be_sealed(self):
         book = figures_check.Book(self.top)

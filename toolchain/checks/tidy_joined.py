@@ -7,7 +7,7 @@ script joins the sources of core to a few texts and checks each text once: every
 source, so that findings name the source and its line. Names in unnamed namespaces must be unique per namespace;
 otherwise the joined text does not compile, which is reported.
 
-Usage: tidy_joined.py CLANG_TIDY BUILD TEXTS SOURCE ...
+Usage: tidy_joined.py CLANG_TIDY BUILD TEXTS [--OPTION_OF_CLANG_TIDY ...] SOURCE ...
 """
 import json
 import pathlib
@@ -98,7 +98,8 @@ def told(output, text, places):
 
 
 def main(tidy, build, texts, *names):
-    sources = [pathlib.Path(name).resolve() for name in names]
+    options = [name for name in names if name.startswith("--")]
+    sources = [pathlib.Path(name).resolve() for name in names if name not in options]
     failed = False
     with tempfile.TemporaryDirectory() as folder:
         running = []
@@ -106,7 +107,7 @@ def main(tidy, build, texts, *names):
             text = pathlib.Path(folder) / f"joined_{i}.cpp"
             content, places = join(group)
             text.write_text(content)
-            command = [tidy, f"--config-file={TOP}/.clang-tidy", "--quiet", str(text), "--",
+            command = [tidy, f"--config-file={TOP}/.clang-tidy", "--quiet", *options, str(text), "--",
                        *flags_of(pathlib.Path(build), group)]
             running.append((text, places, subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                                            text=True)))
