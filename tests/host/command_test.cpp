@@ -220,7 +220,7 @@ TEST(Command, ReportIsOneFileThatFetchesNothing)
     static_cast<void>(scratch.write("run.json", sample_run().dump()));
     const Ran ran = jink(scratch, "report .");
     ASSERT_EQ(ran.status, 0) << ran.err;
-    EXPECT_EQ(ran.out, "Written: ./report.html\n");
+    EXPECT_EQ(ran.out, "Written: report.html\n");
     const std::string page = slurp(scratch.path() / "report.html");
     EXPECT_TRUE(page.starts_with("<!DOCTYPE html>"));
     for (const char* outside :
@@ -232,7 +232,7 @@ TEST(Command, ReportIsOneFileThatFetchesNothing)
     EXPECT_NE(page.find("jink: conflict, traffic in 3.0 s"), std::string::npos);
     EXPECT_NE(page.find("three.js"), std::string::npos) << "the licence's line of what is bundled";
     EXPECT_EQ(jink(scratch, "report run.json --out again.html").status, 0);
-    EXPECT_EQ(slurp(scratch.path() / "again.html"), page) << "the same flights, the same page";
+    EXPECT_TRUE(slurp(scratch.path() / "again.html") == page) << "the same flights, the same page";
     EXPECT_EQ(jink(scratch, "report run.json . --out two.html").status, 0);
     EXPECT_GT(slurp(scratch.path() / "two.html").size(), page.size());
 }

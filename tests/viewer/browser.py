@@ -10,6 +10,9 @@ import tempfile
 import time
 
 
+SIZE = (700, 500)  # of the window [pixels]: pictures are drawn without a graphics processor
+
+
 def find_chromium():
     """None where it is not installed."""
     return shutil.which("chromium")
@@ -22,7 +25,7 @@ class PageError(Exception):
 class Browser:
     """One browser with one page. Console errors and exceptions collect in `errors`."""
 
-    def __init__(self, width=1200, height=900):
+    def __init__(self):
         self.profile = tempfile.TemporaryDirectory(prefix="jink_viewer_", ignore_cleanup_errors=True)
         to_browser, from_browser = os.pipe(), os.pipe()
 
@@ -46,7 +49,7 @@ class Browser:
         self.session = self.call("Target.attachToTarget", targetId=page["targetId"], flatten=True)["sessionId"]
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(f"{domain}.enable")
-        self.resize(width, height)
+        self.resize(*SIZE)
 
     def close(self):
         os.close(self.write_end)

@@ -8,19 +8,35 @@ import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { COLOURS, FATES } from "./words.js";
 import { controlSpans, decisionAt, indexAt, placeOf, pointAt } from "./data.js";
 
-/** A round mark of a constant size on the screen. */
-function mark(colour, size) {
+// Materials are kept: a shader whose last material is disposed of would be compiled again for the next flight.
+const materials = new Map();
+function kept(name, create) {
+  if (!materials.has(name)) materials.set(name, create());
+  return materials.get(name);
+}
+
+const solid = (colour, opacity) => kept(`solid ${colour} ${opacity}`,
+  () => new THREE.MeshLambertMaterial({ color: colour, transparent: true, opacity, depthWrite: opacity > 0.5 }));
+
+function markMaterial(colour, size) {
   const canvas = document.createElement("canvas");
   canvas.width = canvas.height = 64;
   const context = canvas.getContext("2d");
-  context.fillStyle = "#ffffff";
-  context.beginPath(); context.arc(32, 32, 31, 0, 7); context.fill();
-  context.fillStyle = colour;
-  context.beginPath(); context.arc(32, 32, 25, 0, 7); context.fill();
+  for (const [fill, radius] of [["#ffffff", 31], [colour, 25]]) {
+    context.fillStyle = fill;
+    context.beginPath();
+    context.arc(32, 32, radius, 0, 2 * Math.PI);
+    context.fill();
+  }
   const map = new THREE.CanvasTexture(canvas);
   map.colorSpace = THREE.SRGBColorSpace;
+  return new THREE.PointsMaterial({ map, size, sizeAttenuation: false, transparent: true, alphaTest: 0.1, depthTest: false });
+}
+
+/** A round mark of a constant size on the screen. */
+function mark(colour, size) {
   const geometry = new THREE.BufferGeometry().setAttribute("position", new THREE.Float32BufferAttribute([0, 0, 0], 3));
-  const points = new THREE.Points(geometry, new THREE.PointsMaterial({ map, size, sizeAttenuation: false, transparent: true, alphaTest: 0.1, depthTest: false }));
+  const points = new THREE.Points(geometry, kept(`mark ${colour} ${size}`, () => markMaterial(colour, size)));
   points.renderOrder = 5;
   return points;
 }
@@ -32,11 +48,8 @@ function bodyOf(threat) {
   return new THREE.SphereGeometry(threat.radius, 28, 18);
 }
 
-function dispose(group) {
-  group.traverse((object) => {
-    if (object.geometry) object.geometry.dispose();
-    if (object.material) { if (object.material.map) object.material.map.dispose(); object.material.dispose(); }
-  });
+function empty(group) {
+  group.traverse((object) => { if (object.geometry) object.geometry.dispose(); });
   group.clear();
 }
 
@@ -57,10 +70,11 @@ export class Replay {
     this.camera = new THREE.PerspectiveCamera(45, 1, 0.1, 1e5);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener("change", () => this.request());
+    this.ground = new THREE.GridHelper(1, 40, "#b9c2cd", "#d5dbe3");
     this.fixed = new THREE.Group();
     this.bodies = new THREE.Group();
     this.candidates = new THREE.Group();
-    this.scene.add(this.fixed, this.bodies, this.candidates);
+    this.scene.add(this.ground, this.fixed, this.bodies, this.candidates);
     this.showsCandidates = true;
     this.follows = false;
     this.time = 0;
@@ -93,7 +107,9 @@ export class Replay {
   line(points, colour, width, { dashed = false, opacity = 1, order = 1 } = {}) {
     const flat = [];
     for (const p of points) { const v = this.toScene(p); flat.push(v.x, v.y, v.z); }
-    const material = new LineMaterial({ color: colour, linewidth: width, dashed, dashSize: this.size / 60, gapSize: this.size / 90, transparent: opacity < 1, opacity });
+    const dash = dashed ? Number((this.size / 60).toPrecision(1)) : 0;
+    const material = kept(`line ${colour} ${width} ${dash} ${opacity}`, () => new LineMaterial({ color: colour, linewidth: width,
+      dashed, dashSize: dash, gapSize: 0.7 * dash, transparent: opacity < 1, opacity }));
     const line = new Line2(new LineGeometry().setPositions(flat), material);
     if (dashed) line.computeLineDistances();
     line.renderOrder = order;
@@ -113,14 +129,12 @@ export class Replay {
   show(flight, other, shift) {
     Object.assign(this, { flight, other, shift, drawnDecision: undefined });
     this.frame();
-    dispose(this.fixed);
-    dispose(this.bodies);
-    const grid = new THREE.GridHelper(this.size * 4, 40, "#b9c2cd", "#d5dbe3");
-    const ground = this.toScene([this.middle[0], this.middle[1], Math.min(0, this.lowest)]);
-    grid.position.copy(ground);
-    this.fixed.add(grid);
+    empty(this.fixed);
+    empty(this.bodies);
+    this.ground.scale.setScalar(this.size * 4);
+    this.ground.position.copy(this.toScene([this.middle[0], this.middle[1], Math.min(0, this.lowest)]));
     if (flight.mission[0].length > 1) {
-      const points = flight.mission[0].map ? Array.from(flight.mission[0], (x, i) => [x, flight.mission[1][i], flight.mission[2][i]]) : [];
+      const points = Array.from(flight.mission[0], (x, i) => [x, flight.mission[1][i], flight.mission[2][i]]);
       this.fixed.add(this.line(points, COLOURS.mission, 1.5, { dashed: true }));
     }
     const last = flight.t.length - 1;
@@ -132,13 +146,13 @@ export class Replay {
     this.placed = flight.threats.map((threat) => {
       if (threat.moves) this.track(this.fixed, threat.position, 0, threat.position[0].length - 1, COLOURS.threat, 1.5, { opacity: 0.6 });
       const group = new THREE.Group();
-      group.add(new THREE.Mesh(bodyOf(threat), new THREE.MeshLambertMaterial({ color: COLOURS.threat, transparent: true, opacity: 0.7 })), mark(COLOURS.threat, 9));
+      group.add(new THREE.Mesh(bodyOf(threat), solid(COLOURS.threat, 0.7)), mark(COLOURS.threat, 9));
       this.bodies.add(group);
       return [threat, group];
     });
     this.vehicle = new THREE.Group();
     if (flight.safety_distance > 0) {
-      this.vehicle.add(new THREE.Mesh(new THREE.SphereGeometry(flight.safety_distance, 24, 16), new THREE.MeshLambertMaterial({ color: COLOURS.own, transparent: true, opacity: 0.25, depthWrite: false })));
+      this.vehicle.add(new THREE.Mesh(new THREE.SphereGeometry(flight.safety_distance, 24, 16), solid(COLOURS.own, 0.25)));
     }
     this.vehicle.add(mark(COLOURS.own, 15));
     this.bodies.add(this.vehicle);
@@ -214,7 +228,7 @@ export class Replay {
 
   drawCandidates(decision) {
     this.drawnDecision = decision;
-    dispose(this.candidates);
+    empty(this.candidates);
     for (const candidate of decision ? decision.candidates : []) {
       if (!candidate.points || !candidate.points[0].length) continue;
       const { colour, width, dashed } = FATES[candidate.fate];
