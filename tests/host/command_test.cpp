@@ -91,7 +91,7 @@ TEST(Command, WrongCommandLinesExitWithTwoAndHelpWithZero)
     static_cast<void>(scratch.write("good.yaml", kGood));
     for (const char* arguments : {"", "fly", "plan", "plan good.yaml --format xml", "plan good.yaml --mode fast",
                                   "plan good.yaml --sauce", "plan good.yaml --budget 0", "plan good.yaml --budget -5",
-                                  "check", "check --as poem good.yaml", "report", "report . --run x"}) {
+                                  "check", "check --as poem good.yaml", "report", "report a b c", "report . --run x"}) {
         const Ran ran = jink(scratch, arguments);
         EXPECT_EQ(ran.status, 2) << arguments;
         EXPECT_NE(ran.err, "") << arguments;
@@ -202,68 +202,96 @@ nlohmann::json sample_run()
     return {{"flights", {flight, random}}};
 }
 
+/// Whether the viewer has been built; without it `jink report` says what to do.
+bool has_viewer(const Scratch& scratch)
+{
+    static_cast<void>(scratch.write("probe.json", R"({"flights": []})"));
+    const Ran ran = jink(scratch, "report probe.json --out probe.html");
+    EXPECT_TRUE(ran.status == 0 || ran.err.find("toolchain/viewer/setup.sh") != std::string::npos) << ran.err;
+    return ran.status == 0;
+}
+
 TEST(Command, ReportIsOneFileThatFetchesNothing)
 {
     const Scratch scratch;
+    if (!has_viewer(scratch)) {
+        GTEST_SKIP() << "the viewer has not been built";
+    }
     static_cast<void>(scratch.write("run.json", sample_run().dump()));
     const Ran ran = jink(scratch, "report .");
     ASSERT_EQ(ran.status, 0) << ran.err;
+    EXPECT_EQ(ran.out, "Written: report.html\n");
     const std::string page = slurp(scratch.path() / "report.html");
     EXPECT_TRUE(page.starts_with("<!DOCTYPE html>"));
-    EXPECT_TRUE(page.ends_with("</html>\n"));
     for (const char* outside :
-         {"src=\"http", "href=\"http", "url(", "@import", "<link", "<script", "<iframe", "src=\"/", "src=\"file"}) {
+         {"src=\"http", "href=\"http", "@import", "<link rel=\"style", "<script src", "<iframe"}) {
         EXPECT_EQ(page.find(outside), std::string::npos) << outside;
     }
-    std::size_t images = 0;
-    for (std::size_t at = page.find("<img src=\""); at != std::string::npos; at = page.find("<img src=\"", at + 1)) {
-        EXPECT_EQ(page.compare(at + 10, 11, "data:image/"), 0);
-        ++images;
-    }
-    EXPECT_EQ(images, 7U) << "five of the flight, random flights, times";
-    EXPECT_NE(page.find("&lt;script&gt;alert(1)&lt;/script&gt; &amp; &quot;quotes&quot;"), std::string::npos);
-    EXPECT_NE(page.find("1 of 2"), std::string::npos) << "kept the promise";
-    EXPECT_NE(page.find("1.50 m"), std::string::npos);
-    EXPECT_NE(page.find("a way out was found afterwards"), std::string::npos);
+    EXPECT_EQ(page.find("<script>alert"), std::string::npos) << "a title stays a title";
+    EXPECT_EQ(page.find("JINK_FLIGHTS"), std::string::npos);
     EXPECT_NE(page.find("jink: conflict, traffic in 3.0 s"), std::string::npos);
+    EXPECT_NE(page.find("three.js"), std::string::npos) << "the licence's line of what is bundled";
+    EXPECT_EQ(jink(scratch, "report run.json --out again.html").status, 0);
+    EXPECT_TRUE(slurp(scratch.path() / "again.html") == page) << "the same flights, the same page";
+    EXPECT_EQ(jink(scratch, "report run.json . --out two.html").status, 0);
+    EXPECT_GT(slurp(scratch.path() / "two.html").size(), page.size());
 }
 
 TEST(Command, ReportBearsWhatIsMissingAndRefusesWhatIsNoRun)
 {
     const Scratch scratch;
+    if (!has_viewer(scratch)) {
+        GTEST_SKIP() << "the viewer has not been built";
+    }
     nlohmann::json bare = sample_run();
-    bare["flights"] = {
-        nlohmann::json::object(),
-        {{"name", "named"}, {"series", {{"t", {0, 1}}}}},
-        {{"name", 3}, {"least", nullptr}, {"threats", {nullptr, 7}}, {"fan", {{{"points", {{1, 2}}}}}}, {"series", 4}}};
+    bare["flights"] = {nlohmann::json::object(),
+                       {{"name", "named"}, {"series", {{"t", {0, 1}}, {"separation", {nullptr, 2.0}}}}},
+                       {{"least", nullptr}, {"fan", {{{"status", "chosen"}}}}}};
     static_cast<void>(scratch.write("bare.json", bare.dump()));
-    const Ran ran = jink(scratch, "report --run bare.json --out page.html");
+    const Ran ran = jink(scratch, "report bare.json --out page.html");
     EXPECT_EQ(ran.status, 0) << ran.err;
     EXPECT_EQ(ran.out, "Written: page.html\n");
-    static_cast<void>(scratch.write("empty.json", "{\"flights\": []}"));
-    EXPECT_EQ(jink(scratch, "report --run empty.json").status, 0);
-    EXPECT_NE(slurp(scratch.path() / "report.html").find("The run holds no flights."), std::string::npos);
-
+    const nlohmann::json run = sample_run();
+    const auto changed = [&](const char* at, const nlohmann::json& value) {
+        nlohmann::json one = run;
+        one[nlohmann::json::json_pointer(at)] = value;
+        return one.dump();
+    };
     const struct {
-        const char* text;
-        const char* complaint;
+        std::string text;
+        std::string complaint;
     } cases[] = {
-        {"{", "is not JSON"},
-        {"[]", "holds no list of flights"},
-        {"{\"flights\": 3}", "holds no list of flights"},
-        {"{\"flights\": [3]}", "a flight is no JSON object"},
+        {"{", "wrong.json: is not JSON: parse error at line 1, column 2"},
+        {"", "wrong.json: is not JSON"},
+        {"[]", "wrong.json: holds no list of flights"},
+        {"{\"flights\": 3}", "wrong.json: holds no list of flights"},
+        {"{\"flights\": [3]}", "wrong.json: flights[0]: expected an object"},
+        {"{\"flights\": [null]}", "wrong.json: flights[0]: expected an object"},
+        {"ULog\1", "wrong.json: not a ULog file"},
+        {changed("/flights/1/name", 3), "wrong.json: flights[1].name: expected a text"},
+        {changed("/flights/0/promise", "far"), "flights[0].promise: expected a number"},
+        {changed("/flights/0/series", 4), "flights[0].series: expected an object"},
+        {changed("/flights/0/series/t/7", 0.0), "flights[0].series.t[7]: expected a time that is not before the last"},
+        {changed("/flights/0/series/position/5", {1, 2}), "flights[0].series.position[5]: expected three numbers"},
+        {changed("/flights/0/series/mode", {"mission"}),
+         "flights[0].series.mode: 1 values, expected 60 as in series.t"},
+        {changed("/flights/0/threats/0/positions/3", "there"), "flights[0].threats[0].positions[3]: expected a list"},
+        {changed("/flights/0/threats/0/form", "cube"), "flights[0].threats[0].form: expected sphere, cylinder or box"},
+        {changed("/flights/0/fan/1/status", "maybe"),
+         "flights[0].fan[1].status: expected a candidate's status, not 'maybe'"},
     };
     for (const auto& c : cases) {
         static_cast<void>(scratch.write("wrong.json", c.text));
-        const Ran wrong = jink(scratch, "report --run wrong.json");
+        const Ran wrong = jink(scratch, "report wrong.json --out wrong.html");
         EXPECT_EQ(wrong.status, 2) << c.text;
-        EXPECT_NE(wrong.err.find(c.complaint), std::string::npos) << wrong.err;
+        EXPECT_NE(wrong.err.find(c.complaint), std::string::npos) << wrong.err << " expected: " << c.complaint;
+        EXPECT_FALSE(std::filesystem::exists(scratch.path() / "wrong.html")) << c.complaint;
     }
-    EXPECT_NE(jink(scratch, "report --run none.json").err.find("No such file"), std::string::npos);
-    EXPECT_EQ(jink(scratch, "report --run empty.json --out /nowhere/page.html").status, 2);
-    const Ran python = jink(scratch, "report --run empty.json --python /nowhere/python3");
-    EXPECT_EQ(python.status, 2);
-    EXPECT_NE(python.err.find("/nowhere/python3 cannot be started"), std::string::npos) << python.err;
+    EXPECT_NE(jink(scratch, "report none.json").err.find("none.json: cannot be read"), std::string::npos);
+    EXPECT_NE(jink(scratch, "report none.ulg").err.find("none.ulg: cannot be read"), std::string::npos);
+    const Ran nowhere = jink(scratch, "report bare.json --out /nowhere/page.html");
+    EXPECT_EQ(nowhere.status, 2);
+    EXPECT_NE(nowhere.err.find("/nowhere/page.html cannot be written"), std::string::npos) << nowhere.err;
 }
 
 TEST(Command, TablesAreWrittenAndWhatTheyComeFromIsChecked)

@@ -174,6 +174,7 @@ def test_sbom(build, version):
         found = owners(cache[library] for library in needed)
         for library in needed:
             assert found[cache[library]] in listed[name], f"{name}: {library} is not listed"
+    assert "three" in listed["jink"] and "esbuild" not in listed["jink"], "what is bundled into the page of jink report"
     everything = set().union(*listed.values())
     headers = [str(header) for header in included_libraries()]
     found = owners(headers)

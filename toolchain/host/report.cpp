@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// jink report: a page about a demo run. toolchain/report/report.py does the work under Debian's own python3, which has
-// matplotlib; another python3 earlier in PATH may lack it.
-#include <unistd.h>
-
+// jink report: one page about flights, from a run of jink-sim or a flight log of jinkd.
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <iostream>
 #include <memory>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "toolchain/host/commands.hpp"
+#include "toolchain/host/flight_page.hpp"
 #include "toolchain/host/header_text.hpp"
 #include "toolchain/host/script.hpp"
 
@@ -20,25 +21,69 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ReportOptions {
-    std::string folder;
-    std::string run;
+    std::vector<std::string> inputs;
     std::string out;
-    std::string python = "/usr/bin/python3";
 };
+
+bool is_flight_log(const fs::path& file)
+{
+    std::string magic(4, '\0');
+    std::ifstream(file, std::ios::binary).read(magic.data(), 4);
+    return magic == "ULog" || file.extension() == ".ulg";
+}
+
+/// The file that an input names: of a folder its run.json.
+fs::path file_of(const fs::path& input) { return (fs::is_directory(input) ? input / "run.json" : input).lexically_normal(); }
+
+PageSource read(const fs::path& file) { return is_flight_log(file) ? read_flight_log(file) : read_run(file); }
+
+fs::path page_beside(const fs::path& file)
+{
+    return is_flight_log(file) ? fs::path(file).replace_extension(".html") : file.parent_path() / "report.html";
+}
+
+std::string viewer()
+{
+    const fs::path file = find_viewer();
+    std::ifstream in(file, std::ios::binary);
+    std::ostringstream text;
+    if (!in || !(text << in.rdbuf())) {
+        refuse("report", file.string() + " cannot be read: run toolchain/viewer/setup.sh, then build the target jink");
+    }
+    return text.str();
+}
+
+/// Under another name first: a page is whole, or not there.
+void write(const fs::path& file, const std::string& page)
+{
+    const fs::path part = file.string() + ".part";
+    std::ofstream out(part, std::ios::binary);
+    out << page;
+    out.close();
+    std::error_code error;
+    if (out) {
+        fs::rename(part, file, error);
+    }
+    if (!out || error) {
+        const std::string why = error ? error.message() : std::strerror(errno);
+        fs::remove(part, error);
+        refuse("report", file.string() + " cannot be written: " + why);
+    }
+}
 
 void run_report(const ReportOptions& options)
 {
-    if (options.folder.empty() == options.run.empty()) {
-        refuse("report", "give either a folder with run.json, or --run");
+    std::vector<PageSource> sources;
+    try {
+        for (const std::string& input : options.inputs) {
+            sources.push_back(read(file_of(input)));
+        }
+        const fs::path out = options.out.empty() ? page_beside(file_of(options.inputs.front())) : fs::path(options.out);
+        write(out, make_page(viewer(), sources));
+        std::cout << "Written: " << out.string() << "\n";
+    } catch (const BadFlight& error) {
+        refuse("report", error.what());
     }
-    const std::string in = options.run.empty() ? (fs::path(options.folder) / "run.json").string() : options.run;
-    const std::string out = !options.out.empty() ? options.out : (fs::path(in).parent_path() / "report.html").string();
-    const std::string script = find_report_script("report.py").string();
-    std::fflush(nullptr);
-    // Replaces this program: its exit status is the script's. -I keeps PYTHONPATH and user packages out.
-    execl(options.python.c_str(), options.python.c_str(), "-I", "-B", script.c_str(), "--run", in.c_str(), "--out",
-          out.c_str(), static_cast<char*>(nullptr));
-    refuse("report", options.python + " cannot be started: " + std::strerror(errno));
 }
 
 }  // namespace
@@ -46,11 +91,15 @@ void run_report(const ReportOptions& options)
 void add_report(CLI::App& jink)
 {
     auto options = std::make_shared<ReportOptions>();
-    CLI::App* command = jink.add_subcommand("report", "make one self-contained HTML page of a demo run");
-    command->add_option("folder", options->folder, "folder with run.json of jink-sim; the page is written beside it");
-    command->add_option("--run", options->run, "the run itself, where it has another name");
-    command->add_option("--out", options->out, "the page to write, default report.html beside the run");
-    command->add_option("--python", options->python, "a Python 3 with matplotlib")->capture_default_str();
+    CLI::App* command = jink.add_subcommand(
+        "report", "make one self-contained HTML page of flights: replay, candidates, charts; two inputs are compared");
+    command
+        ->add_option("inputs", options->inputs,
+                     "flight log of jinkd (ULog), run.json of jink-sim, or the folder of a run.json; one or two")
+        ->required()
+        ->expected(1, 2);
+    command->add_option("--out", options->out,
+                        "the page to write, default report.html beside a run, NAME.html beside NAME.ulg");
     command->callback([options] { run_report(*options); });
 }
 

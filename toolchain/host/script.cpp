@@ -12,14 +12,23 @@
 
 namespace jink::host {
 
-std::filesystem::path find_report_script(const std::string& name)
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Beside the program, otherwise in `folder`.
+fs::path installed_or_in(const fs::path& folder, const std::string& name)
 {
-    namespace fs = std::filesystem;
     std::error_code error;
     const fs::path program = fs::read_symlink("/proc/self/exe", error);
     const fs::path installed = program.parent_path().parent_path() / "share/jink/report" / name;
-    return fs::exists(installed, error) ? installed : fs::path(JINK_REPORT_FOLDER) / name;
+    return fs::exists(installed, error) ? installed : folder / name;
 }
+
+}  // namespace
+
+fs::path find_report_script(const std::string& name) { return installed_or_in(JINK_REPORT_FOLDER, name); }
+fs::path find_viewer() { return installed_or_in(JINK_VIEWER_FOLDER, "viewer.html"); }
 
 void become_report_script(const char* command, const std::string& python, const std::string& name,
                           const std::string& input, const std::string& folder)

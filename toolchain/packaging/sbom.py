@@ -3,7 +3,7 @@
 
     sbom.py --build FOLDER --out FILE [--version VERSION]
 
-Shared libraries are those that ldd names, headers those that ninja recorded for every object of a program. Names,
+three is bundled into the page of `jink report`; toolchain/viewer/package-lock.json has its version. Shared libraries are those that ldd names, headers those that ninja recorded for every object of a program. Names,
 versions and licences come from dpkg and the copyright files of the packages.
 """
 import argparse
@@ -124,6 +124,17 @@ def package_entry(package):
     }
 
 
+def bundled_entries():
+    """npm packages that are bundled into viewer.html: the viewer's dependencies but those of its development."""
+    packages = json.loads((TOP / "toolchain/viewer/package-lock.json").read_text(encoding="utf-8"))["packages"]
+    for name in sorted(packages[""]["dependencies"]):
+        entry = packages[f"node_modules/{name}"]
+        yield {"SPDXID": f"SPDXRef-npm-{name}", "name": name, "versionInfo": entry["version"], "downloadLocation": entry["resolved"],
+               "filesAnalyzed": False, "licenseConcluded": "NOASSERTION", "licenseDeclared": entry["license"], "copyrightText": "NOASSERTION",
+               "externalRefs": [{"referenceCategory": "PACKAGE-MANAGER", "referenceType": "purl",
+                                 "referenceLocator": f"pkg:npm/{name}@{entry['version']}"}]}
+
+
 def own_entry(name, version):
     return {"SPDXID": f"SPDXRef-{name}", "name": name, "versionInfo": version, "downloadLocation": "NOASSERTION",
             "filesAnalyzed": False, "licenseConcluded": "BSD-3-Clause", "licenseDeclared": "BSD-3-Clause",
@@ -148,7 +159,10 @@ def document(build, version):
                     entries[package] = package_entry(package)
                 relations.append({"spdxElementId": f"SPDXRef-{name}", "relationshipType": relation,
                                   "relatedSpdxElement": entries[package]["SPDXID"], "comment": comment})
-    packages = [own_entry(name, version) for name in targets] + [entries[name] for name in sorted(entries)]
+    bundled = list(bundled_entries())
+    relations += [{"spdxElementId": "SPDXRef-jink", "relationshipType": "CONTAINS", "relatedSpdxElement": entry["SPDXID"],
+                   "comment": "bundled into viewer.html"} for entry in bundled]
+    packages = [own_entry(name, version) for name in targets] + [entries[name] for name in sorted(entries)] + bundled
     refs = sorted({ref for p in packages for ref in re.findall(r"LicenseRef-[A-Za-z0-9.-]+", p["licenseDeclared"])})
     seconds = int(os.environ.get("SOURCE_DATE_EPOCH", time.time()))
     when = datetime.datetime.fromtimestamp(seconds, datetime.timezone.utc)

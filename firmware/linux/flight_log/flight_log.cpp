@@ -232,6 +232,7 @@ void FlightLog::end(const app::StepReport& report, app::Coprocessor& coprocessor
     }
     if (report.guidance.new_manoeuvre) {
         ++decisions_;
+        put(TopicId::decision, decision_topic(report, coprocessor.own().position, began, decisions_));
         put_candidates(coprocessor, began);
     }
     put_changed_parameters(coprocessor.parameters());

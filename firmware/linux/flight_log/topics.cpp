@@ -86,6 +86,7 @@ std::vector<std::string> topic_formats()
     std::vector<std::string> formats{std::string(StepTopic::kFormat),
                                      std::string(OwnTopic::kFormat),
                                      std::string(TrackTopic::kFormat),
+                                     std::string(DecisionTopic::kFormat),
                                      std::string(CandidateTopic::kFormat),
                                      format_of("jink_app_counters", app_counters()),
                                      format_of("jink_avoid_counters", avoid_counters()),
@@ -142,6 +143,24 @@ StepTopic step_topic(const app::StepReport& r, TimePoint now, std::uint32_t conf
     t.on_other = g.on_other;
     t.other_conflict = g.other_conflict;
     t.blocked = g.blocked;
+    return t;
+}
+
+DecisionTopic decision_topic(const app::StepReport& report, const Vec3& own, TimePoint now,
+                             std::uint32_t number) noexcept
+{
+    constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+    DecisionTopic t;
+    t.timestamp = static_cast<std::uint64_t>(now.us);
+    t.decision = number;
+    t.start = xyz_of(own);
+    t.own_at_closest = t.threat_at_closest = {kNone, kNone, kNone};
+    t.radius_at_closest = kNone;
+    if (const auto& conflict = report.guidance.conflict) {
+        t.own_at_closest = xyz_of(conflict->own_at_closest);
+        t.threat_at_closest = xyz_of(conflict->threat_at_closest);
+        t.radius_at_closest = conflict->radius_at_closest;
+    }
     return t;
 }
 

@@ -101,6 +101,20 @@ struct TrackTopic {
     bool cooperative = false;
 };
 
+/// At each new manoeuvre, before its candidates: where their common frame lies, which has its x axis from `start` to
+/// `own_at_closest`. NaN without a conflict.
+struct DecisionTopic {
+    static constexpr std::string_view kFormat =
+        "jink_decision:uint64_t timestamp;uint32_t decision;float[3] start;float[3] own_at_closest;"
+        "float[3] threat_at_closest;float radius_at_closest;";
+    std::uint64_t timestamp = 0;
+    std::uint32_t decision = 0;
+    Xyz start{};
+    Xyz own_at_closest{};
+    Xyz threat_at_closest{};
+    float radius_at_closest = 0.0F;
+};
+
 /// One for each candidate of the geometric planner's last plan, at each new manoeuvre.
 struct CandidateTopic {
     static constexpr std::string_view kFormat =
@@ -141,7 +155,7 @@ struct LogTopic {
 };
 
 /// Ids of the topics in a file, in the order of their subscriptions.
-enum class TopicId : std::uint16_t { step, own, track, candidate, app_counters, avoid_counters, log, hal };
+enum class TopicId : std::uint16_t { step, own, track, decision, candidate, app_counters, avoid_counters, log, hal };
 
 /// Records of steps are cut into parts, and a part takes the smallest of these sizes in which it fits; ULog has no
 /// messages of variable size. Topic ids from TopicId::hal on.
@@ -184,6 +198,9 @@ template <class T>
 /// The step's topic, but for its number and duration.
 /// @param conflict_id  of the track in conflict; 0: none
 [[nodiscard]] StepTopic step_topic(const app::StepReport& report, TimePoint now, std::uint32_t conflict_id) noexcept;
+/// @param own  own position [m]
+[[nodiscard]] DecisionTopic decision_topic(const app::StepReport& report, const Vec3& own, TimePoint now,
+                                           std::uint32_t number) noexcept;
 [[nodiscard]] CandidateTopic candidate_topic(const geometric::Candidate& candidate) noexcept;
 
 // Names of numbers in topics and in the status line; "?" for none. Each ends with a zero byte.

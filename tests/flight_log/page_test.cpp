@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Pages of flight logs and runs: samples against the log's own messages, damaged logs, and the pages in a browser.
+#include <sys/wait.h>
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <random>
+
+#include "tests/flight_log/recorded_flight.hpp"
+#include "tests/host/scratch.hpp"
+#include "toolchain/host/flight_page.hpp"
+#include "toolchain/sim/in_process.hpp"
+#include "toolchain/sim/random_scenario.hpp"
+#include "toolchain/sim/report.hpp"
+#include "toolchain/sim/scenario_file.hpp"
+
+namespace {
+
+using namespace jink::test;
+namespace host = jink::host;
+namespace sim = jink::sim;
+
+const RecordedFlight& page_flight()
+{
+    static const RecordedFlight flown = [] {
+        sim::Scenario scenario = sim::random_scenario(7);
+        scenario.duration = 16.0;
+        return fly_recorded(scenario, {});
+    }();
+    return flown;
+}
+
+host::PageFlight page_of(const Scratch& scratch, const std::string& log)
+{
+    return host::read_flight_log(scratch.write("flight.ulg", log)).flights.at(0);
+}
+
+TEST(FlightPage, SamplesAreWhatTheLogSays)
+{
+    const Scratch scratch;
+    const host::PageFlight flight = page_of(scratch, page_flight().log);
+    ASSERT_EQ(flight.decisions.size(), page_flight().manoeuvres);
+    ASSERT_GT(flight.decisions.size(), 0U);
+    EXPECT_EQ(flight.safety_distance, 1.0);
+    EXPECT_EQ(flight.complaints, std::vector<std::string>());
+    // Every own state of the log, against the samples around it.
+    std::istringstream in(page_flight().log);
+    jink::ulog::Reader log(in);
+    std::uint64_t start = 0;
+    std::size_t compared = 0;
+    while (const auto message = log.next()) {
+        if (message->type != jink::ulog::Type::data) {
+            continue;
+        }
+        const auto content = message->content.subspan(2);
+        const std::string& topic = log.topic(jink::ulog::read_number<std::uint16_t>(message->content))->name;
+        const auto stamp = jink::ulog::read_number<std::uint64_t>(content);
+        start = start == 0 && topic == "jink_step" ? stamp : start;
+        if (topic != "jink_own") {
+            continue;
+        }
+        jink::flightlog::OwnTopic own;
+        std::memcpy(&own, content.data(), jink::flightlog::kBytesOf<jink::flightlog::OwnTopic>);
+        const double time = static_cast<double>(stamp - start) * 1e-6;
+        const auto i = static_cast<std::size_t>(time / 0.1);
+        if (i + 1 >= flight.t.size() || std::isnan(flight.own.x[i])) {
+            continue;
+        }
+        const double share = (time - flight.t[i]) / 0.1;
+        // Between samples the path bends by less than 5 m/s2 * (0.1 s)^2, and a state is up to 0.1 s old.
+        constexpr double kBend = 0.15;
+        EXPECT_NEAR(flight.own.x[i] + share * (flight.own.x[i + 1] - flight.own.x[i]), double(own.position[0]), kBend);
+        EXPECT_NEAR(flight.own.z[i] + share * (flight.own.z[i + 1] - flight.own.z[i]), double(own.position[2]), kBend);
+        ++compared;
+    }
+    EXPECT_GT(compared, 500U);
+}
+
+TEST(FlightPage, CandidatesBeginAtTheVehicleAndTheChosenOneIsTheCheapestThatIsClear)
+{
+    const Scratch scratch;
+    const host::PageFlight flight = page_of(scratch, page_flight().log);
+    std::size_t chosen = 0;
+    for (const host::PageDecision& decision : flight.decisions) {
+        const auto i = static_cast<std::size_t>(decision.time / 0.1);
+        double least_unchecked = 2.0;
+        double cost = 0.0;
+        for (const host::PageCandidate& candidate : decision.candidates) {
+            ASSERT_EQ(candidate.points.x.size(), 25U);
+            EXPECT_LT(std::hypot(candidate.points.x[0] - flight.own.x[i], candidate.points.y[0] - flight.own.y[i]),
+                      1.5);
+            if (candidate.fate == host::Fate::more_expensive) {
+                least_unchecked = std::min(least_unchecked, candidate.cost);
+            } else if (candidate.fate == host::Fate::chosen) {
+                cost = candidate.cost;
+                ++chosen;
+            }
+        }
+        EXPECT_LE(cost, least_unchecked + 0.15) << "0.15: penalty for changing sides";
+    }
+    EXPECT_GT(chosen, 0U);
+}
+
+TEST(FlightPage, DamagedLogsGiveAPageOrAReason)
+{
+    const Scratch scratch;
+    std::mt19937 random(20260117);
+    const std::string& good = page_flight().log;
+    std::size_t pages = 0;
+    std::size_t refused = 0;
+    for (int i = 0; i < 60; ++i) {
+        std::string log = good.substr(0, i % 3 == 0 ? random() % good.size() : good.size() / 4);
+        for (unsigned flips = i % 3 == 1 ? 1 + random() % 30 : 0; flips > 0 && !log.empty(); --flips) {
+            log[random() % log.size()] = static_cast<char>(random());
+        }
+        if (i % 3 == 2) {  // numbers that cannot be, in place of what was measured
+            for (int k = 0; k < 200; ++k) {
+                const float value = k % 2 == 0 ? std::numeric_limits<float>::quiet_NaN() : 3e38F;
+                std::memcpy(log.data() + 8000 + random() % (log.size() - 8004), &value, sizeof value);
+            }
+        }
+        try {
+            const std::vector<host::PageSource> sources{host::read_flight_log(scratch.write("bad.ulg", log))};
+            EXPECT_LT(host::page_data(sources).size(), 10 * good.size());
+            ++pages;
+        } catch (const host::BadFlight& error) {
+            EXPECT_NE(std::string(error.what()).find("bad.ulg: "), std::string::npos) << error.what();
+            ++refused;
+        }
+    }
+    EXPECT_GT(pages, 10U);
+    EXPECT_GT(refused, 0U);
+}
+
+/// The same scenario twice, the second time with other parameters.
+void write_runs(const Scratch& scratch)
+{
+    for (const char* file : {"run.json", "changed.json"}) {
+        std::vector<sim::ReportedFlight> flights;
+        for (const char* name : {"head_on", "wall", "tuning_2"}) {
+            sim::Scenario scenario = sim::load_scenario(std::string(JINK_SCENARIOS "/") + name + ".yaml");
+            scenario.parameters["JNK_LOOKAHEAD"] = file[0] == 'r' ? 8.0 : 6.0;
+            flights.push_back(sim::report_on(scenario, sim::fly_in_process(scenario), false));
+        }
+        static_cast<void>(scratch.write(file, sim::run_text(flights, true)));
+    }
+}
+
+TEST(FlightPage, ShowsItAllInABrowser)
+{
+    if (std::system("command -v chromium >/dev/null") != 0) {
+        GTEST_SKIP() << "no chromium";
+    }
+    const Scratch scratch;
+    write_runs(scratch);
+    static_cast<void>(scratch.write("flight.ulg", page_flight().log));
+    const std::string command = "/usr/bin/python3 -B '" JINK_VIEWER_TEST "' --jink '" JINK_PROGRAM "' --input '" +
+                                scratch.path().string() + "'";
+    const int status = std::system(command.c_str());
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 77) {
+        GTEST_SKIP() << "the viewer has not been built";
+    }
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << "see the lines FAILED above";
+}
+
+}  // namespace

@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Flights of jink-sim: run.json (tests/scenario/README.md describes its layout).
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "toolchain/host/flight_page.hpp"
+
+namespace jink::host {
+namespace {
+
+using nlohmann::json;
+
+/// A value and its place, such as "run.json: flights[2].series.t[5]".
+class Node {
+public:
+    Node(const json* value, std::string place) : value_(value), place_(std::move(place)) {}
+
+    /// Missing, or null.
+    [[nodiscard]] bool is_absent() const { return value_ == nullptr || value_->is_null(); }
+    [[noreturn]] void refuse(const std::string& what) const { throw BadFlight(place_ + ": " + what); }
+
+    [[nodiscard]] Node operator[](const char* key) const
+    {
+        if (is_absent()) {
+            return {nullptr, place_ + "." + key};
+        }
+        if (!value_->is_object()) {
+            refuse("expected an object");
+        }
+        const auto found = value_->find(key);
+        return {found == value_->end() ? nullptr : &*found, place_ + "." + key};
+    }
+    [[nodiscard]] std::vector<Node> items() const
+    {
+        std::vector<Node> all;
+        if (is_absent()) {
+            return all;
+        }
+        if (!value_->is_array()) {
+            refuse("expected a list");
+        }
+        all.reserve(value_->size());
+        for (std::size_t i = 0; i < value_->size(); ++i) {
+            all.emplace_back(&(*value_)[i], place_ + "[" + std::to_string(i) + "]");
+        }
+        return all;
+    }
+    [[nodiscard]] double number(double absent = kUnknown) const
+    {
+        if (is_absent()) {
+            return absent;
+        }
+        if (!value_->is_number()) {
+            refuse("expected a number");
+        }
+        return value_->get<double>();
+    }
+    [[nodiscard]] std::string text(const std::string& absent = "") const
+    {
+        if (is_absent()) {
+            return absent;
+        }
+        if (!value_->is_string()) {
+            refuse("expected a text");
+        }
+        return value_->get<std::string>();
+    }
+    [[nodiscard]] bool flag(bool absent) const
+    {
+        if (is_absent()) {
+            return absent;
+        }
+        if (!value_->is_boolean()) {
+            refuse("expected true or false");
+        }
+        return value_->get<bool>();
+    }
+    /// Appends a point; null: unknown.
+    void point(Columns3& into) const
+    {
+        if (is_absent()) {
+            into.x.push_back(kUnknown);
+            into.y.push_back(kUnknown);
+            into.z.push_back(kUnknown);
+            return;
+        }
+        const std::vector<Node> parts = items();
+        if (parts.size() != 3) {
+            refuse("expected three numbers");
+        }
+        into.x.push_back(parts[0].number());
+        into.y.push_back(parts[1].number());
+        into.z.push_back(parts[2].number());
+    }
+    [[nodiscard]] Columns3 points() const
+    {
+        Columns3 all;
+        for (const Node& item : items()) {
+            item.point(all);
+        }
+        return all;
+    }
+    [[nodiscard]] Column numbers() const
+    {
+        Column all;
+        for (const Node& item : items()) {
+            all.push_back(item.number());
+        }
+        return all;
+    }
+    /// Refuses a column that is there with another length than the time's.
+    void expect_size(std::size_t size, std::size_t expected) const
+    {
+        if (!is_absent() && size != expected) {
+            refuse(std::to_string(size) + " values, expected " + std::to_string(expected) + " as in series.t");
+        }
+    }
+
+private:
+    const json* value_;
+    std::string place_;
+};
+
+void read_series(const Node& series, PageFlight& flight)
+{
+    flight.t = series["t"].numbers();
+    const std::size_t n = flight.t.size();
+    for (std::size_t i = 0; i < n; ++i) {
+        if (!(std::abs(flight.t[i]) <= kMaxShown) || (i > 0 && flight.t[i] < flight.t[i - 1])) {
+            series["t"].items()[i].refuse("expected a time that is not before the last one");
+        }
+    }
+    const auto read = [&](const char* key, Columns3& into) {
+        into = series[key].points();
+        series[key].expect_size(into.x.size(), n);
+        if (into.x.empty()) {
+            into = {Column(n, kUnknown), Column(n, kUnknown), Column(n, kUnknown)};
+        }
+    };
+    read("position", flight.own);
+    read("velocity", flight.velocity);
+    read("setpoint", flight.command);
+    flight.separation = series["separation"].numbers();
+    series["separation"].expect_size(flight.separation.size(), n);
+    flight.separation.resize(n, kUnknown);
+    const std::vector<Node> modes = series["mode"].items();
+    series["mode"].expect_size(modes.size(), n);
+    for (std::size_t i = 0; i < modes.size(); ++i) {
+        std::string mode = modes[i].text();
+        if (flight.phases.empty() || flight.phases.back().mode != mode) {
+            const bool in_control = mode == "external";
+            flight.phases.push_back({flight.t[i], std::move(mode), in_control});
+        }
+    }
+}
+
+PageThreat read_threat(const Node& node, std::size_t samples)
+{
+    PageThreat threat;
+    threat.name = node["name"].text("threat");
+    threat.form = node["form"].text("sphere");
+    if (threat.form != "sphere" && threat.form != "cylinder" && threat.form != "box") {
+        node["form"].refuse("expected sphere, cylinder or box");
+    }
+    threat.radius = node["radius"].number(0.0);
+    threat.half_height = node["half_height"].number(0.0);
+    threat.half_extents = node["half_extents"].numbers();
+    if (threat.form == "box" && threat.half_extents.size() != 3) {
+        node["half_extents"].refuse("expected three numbers");
+    }
+    threat.moves = node["moves"].flag(true);
+    threat.position = node["positions"].points();
+    if (threat.moves) {
+        node["positions"].expect_size(threat.position.x.size(), samples);
+    }
+    return threat;
+}
+
+/// The candidates of the first plan. The file does not say when that was: at the sample that lies nearest to the
+/// candidates' common start, before jink lets go of control for the first time.
+void read_decision(const Node& node, PageFlight& flight)
+{
+    const std::vector<Node> fan = node["fan"].items();
+    if (fan.empty()) {
+        return;
+    }
+    PageDecision decision;
+    decision.text = node["inside"]["first_candidate"].text();
+    std::vector<std::string> status;
+    for (const Node& item : fan) {
+        status.push_back(item["status"].text());
+    }
+    const bool found = std::find(status.begin(), status.end(), "chosen") != status.end();
+    for (std::size_t i = 0; i < fan.size(); ++i) {
+        PageCandidate candidate;
+        const double cost = fan[i]["cost"].number(0.0);
+        candidate.cost = cost > 0.0 ? cost : kUnknown;
+        candidate.points = fan[i]["points"].points();
+        if (status[i] == "chosen") {
+            candidate.fate = Fate::chosen;
+        } else if (status[i] == "available") {
+            candidate.fate = Fate::clear;
+        } else if (status[i] == "not_flyable") {
+            candidate.fate = Fate::not_flyable;
+        } else if (status[i].starts_with("hits_")) {
+            candidate.fate = Fate::contact;
+        } else if (status[i] == "not_evaluated") {
+            candidate.fate = fate_of_unchecked(cost > 0.0, found, false);
+        } else {
+            fan[i]["status"].refuse("expected a candidate's status, not '" + status[i] + "'");
+        }
+        decision.candidates.push_back(std::move(candidate));
+    }
+    const Columns3& first = decision.candidates.front().points;
+    double nearest = std::numeric_limits<double>::infinity();
+    bool had_control = false;
+    for (std::size_t i = 0, phase = 0; i < flight.t.size() && !first.x.empty(); ++i) {
+        while (phase + 1 < flight.phases.size() && flight.phases[phase + 1].from <= flight.t[i]) {
+            ++phase;
+        }
+        const bool in_control = !flight.phases.empty() && flight.phases[phase].in_control;
+        if (had_control && !in_control) {
+            break;
+        }
+        had_control = in_control;
+        const double distance =
+            std::hypot(flight.own.x[i] - first.x[0], flight.own.y[i] - first.y[0], flight.own.z[i] - first.z[0]);
+        if (distance < nearest) {
+            nearest = distance;
+            decision.time = flight.t[i];
+        }
+    }
+    flight.decisions.push_back(std::move(decision));
+}
+
+void read_events(const Node& node, PageFlight& flight)
+{
+    std::set<std::string> said;
+    for (const Node& item : node["link"]["texts"].items()) {
+        const std::string text = item["text"].text();
+        if (said.insert(text.substr(0, text.find(','))).second) {
+            flight.events.push_back({item["t"].number(0.0), "text", text});
+        }
+    }
+    for (const Node& item : node["threats"].items()) {
+        if (const double appeared = item["appeared"].number(0.0); appeared > 0.0) {
+            flight.events.push_back({appeared, "threat", item["name"].text("threat") + " comes into sight"});
+        }
+    }
+    for (std::size_t i = 1; i < flight.phases.size(); ++i) {
+        const PagePhase& now = flight.phases[i];
+        const char* const change = now.in_control                  ? "jink has control: mode "
+                                   : flight.phases[i - 1].in_control ? "jink has no longer control: mode "
+                                                                     : "mode ";
+        flight.events.push_back({now.from, "state", change + now.mode});
+    }
+    if (flight.least == flight.least && flight.least_time == flight.least_time) {
+        flight.events.push_back({flight.least_time, "closest", "closest to " + flight.least_threat});
+    }
+    std::stable_sort(flight.events.begin(), flight.events.end(),
+                     [](const PageEvent& a, const PageEvent& b) { return a.time < b.time; });
+}
+
+PageFlight read_flight(const Node& node)
+{
+    PageFlight flight;
+    flight.name = node["name"].text("flight");
+    flight.title = node["title"].text(flight.name);
+    for (const char* key : {"stack", "transport"}) {
+        const std::string part = node[key].text();
+        flight.origin += (flight.origin.empty() || part.empty() ? "" : ", ") + part;
+    }
+    flight.outcome = node["outcome"].text();
+    for (const char* key : {"unmet", "faults"}) {
+        for (const Node& item : node[key].items()) {
+            flight.complaints.push_back(item.text());
+        }
+    }
+    flight.as_expected = node["as_expected"].flag(true);
+    flight.safety_distance = node["promise"].number();
+    flight.safety_text = "promised distance, centre to true surface";
+    flight.least = node["least"]["surface"].number();
+    flight.least_time = node["least"]["t"].number();
+    flight.least_threat = node["least"]["threat"].text("threat");
+    flight.alone = node["least"]["alone"].number();
+    if (!node["judge"].is_absent() && flight.least < flight.safety_distance) {
+        flight.complaints.emplace_back(node["judge"]["avoidable"].flag(false)
+                                           ? "a manoeuvre that keeps the distance was found afterwards"
+                                           : "no manoeuvre that was tried afterwards keeps the distance");
+    }
+    const double worst = node["inside"]["plan_steps"]["worst_us"].number();
+    flight.planning_time = worst > 0.0 ? worst * 1e-3 : kUnknown;
+    flight.mission = node["mission"].points();
+    read_series(node["series"], flight);
+    for (const Node& item : node["threats"].items()) {
+        flight.threats.push_back(read_threat(item, flight.t.size()));
+    }
+    read_decision(node, flight);
+    read_events(node, flight);
+    return flight;
+}
+
+}  // namespace
+
+PageSource read_run(const std::filesystem::path& file)
+{
+    std::ifstream in(file, std::ios::binary);
+    if (!in || !std::filesystem::is_regular_file(file)) {
+        throw BadFlight(file.string() + ": cannot be read; expected a run of jink-sim or a flight log of jinkd");
+    }
+    json run;
+    try {
+        run = json::parse(in);
+    } catch (const json::exception& error) {
+        const std::string text = error.what();
+        const std::size_t at = text.find("] ");
+        throw BadFlight(file.string() + ": is not JSON: " + (at == std::string::npos ? text : text.substr(at + 2)));
+    }
+    const Node top(&run, file.string());
+    if (!run.is_object() || !run.contains("flights") || !run["flights"].is_array()) {
+        top.refuse("holds no list of flights");
+    }
+    PageSource source{file.string(), {}};
+    for (const Node& item : Node(&run["flights"], file.string() + ": flights").items()) {
+        if (item.is_absent()) {
+            item.refuse("expected an object");
+        }
+        source.flights.push_back(read_flight(item));
+    }
+    return source;
+}
+
+}  // namespace jink::host

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Colours and words of the page.
+
+export const COLOURS = { own: "#1d5fa8", other: "#a8327d", command: "#2b2f36", mission: "#8a93a0", threat: "#e07b1a", limit: "#c62828",
+  alone: "#b06a12", control: "#d7ecd9", decision: "#1e9e3e", grid: "#d9dde3" };
+
+// Purple, light blue and green as in Pinheiro 4.5.1; grey and dashed: never checked.
+export const FATES = {
+  chosen: { colour: "#1e9e3e", width: 4, text: "chosen: the cheapest one that is clear" },
+  clear: { colour: "#5bb8e8", width: 2, text: "clear, but more expensive than the chosen one" },
+  contact: { colour: "#8e3fa8", width: 2, text: "would touch something" },
+  not_flyable: { colour: "#c9a5d6", width: 2, text: "more than the vehicle can fly" },
+  more_expensive: { colour: "#7d8794", width: 1.5, dashed: true, text: "not checked: no cheaper than the chosen one" },
+  budget_spent: { colour: "#d08b00", width: 1.5, dashed: true, text: "not checked: the work budget was used up" },
+};
+
+export const OUTCOMES = {
+  clear: ["good", "jink did not take control: nothing was in the way, or the autopilot refused and was asked to hold"],
+  avoided: ["good", "jink took control and kept the promised distance"],
+  braked: ["good", "the same, and it held still for a while"],
+  breach: ["bad", "nearer than promised, no contact"],
+  collision: ["bad", "the bodies touched"],
+  failed: ["bad", "a rule of the link or of the airspace was broken"],
+};
+
+const minus = (text) => text.replace("-", "\u2212");
+/** A number with its unit; a dash where it is unknown. */
+export const measure = (value, unit, digits = 2) => value === null || value === undefined || Number.isNaN(value) ? "\u2013"
+  : `${minus(value.toFixed(digits))}${unit ? "\u00a0" + unit : ""}`;
+
+/** An element with attributes (className, textContent, ...) and children. */
+export function make(tag, attributes = {}, ...children) {
+  const element = Object.assign(document.createElement(tag), attributes);
+  element.append(...children);
+  return element;
+}
+
+const SVG = "http://www.w3.org/2000/svg";
+export function makeSvg(tag, attributes = {}, ...children) {
+  const element = document.createElementNS(SVG, tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  element.append(...children);
+  return element;
+}
+
+/** A legend's entry: a stroke and words. */
+export function key(colour, text, { width = 2, dashed = false } = {}) {
+  const stroke = makeSvg("svg", { width: 26, height: 8 }, makeSvg("line",
+    { x1: 0, x2: 26, y1: 4, y2: 4, stroke: colour, "stroke-width": width, "stroke-dasharray": dashed ? "5 4" : "none" }));
+  return make("span", { className: "key" }, stroke, make("span", { textContent: text }));
+}
