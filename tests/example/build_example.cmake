@@ -13,3 +13,18 @@ run(${CMAKE_COMMAND} -S ${EXAMPLE} -B ${WORK}/build -G Ninja -DCMAKE_PREFIX_PATH
     "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror" -DCMAKE_BUILD_TYPE=Release)
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/example)
+
+# The C example: by jink::c, and by pkg-config as C11 without a warning.
+set(c_example ${EXAMPLE}/c_interface)
+if(EXISTS ${WORK}/prefix/include/jink.h)
+  run(${CMAKE_COMMAND} -S ${c_example} -B ${WORK}/build_c -G Ninja -DCMAKE_PREFIX_PATH=${WORK}/prefix -DCMAKE_C_COMPILER=${C_COMPILER}
+      "-DCMAKE_C_FLAGS=-Wall -Wextra -pedantic -Werror" -DCMAKE_BUILD_TYPE=Release)
+  run(${CMAKE_COMMAND} --build ${WORK}/build_c)
+  run(${WORK}/build_c/example)
+  file(GLOB_RECURSE pc ${WORK}/prefix/*/jink.pc)
+  cmake_path(GET pc PARENT_PATH pc_folder)
+  cmake_path(GET pc_folder PARENT_PATH library_folder)
+  run(sh -ec "flags=$(PKG_CONFIG_PATH=${pc_folder} pkg-config --cflags --libs jink); for std in 'c11 -x c' 'c++20 -x c++'; do
+      ${C_COMPILER} -std=$std -Wall -Wextra -pedantic -Werror ${c_example}/main.c -x none -o ${WORK}/with_pkg_config $flags -Wl,-rpath,${library_folder}
+      ${WORK}/with_pkg_config; done")
+endif()

@@ -17,7 +17,8 @@ import time
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
 # What the Debian packages hold, by its place in a build folder.
-PROGRAMS = {"jinkd": "firmware/linux/jinkd", "jink": "toolchain/host/jink", "jink-sim": "toolchain/sim/jink-sim"}
+PROGRAMS = {"jinkd": "firmware/linux/jinkd", "jink": "toolchain/host/jink", "jink-sim": "toolchain/sim/jink-sim",
+            "libjink0": "firmware/linux/c_interface/libjink.so"}
 LIBRARIES = ["core/libjink_core.a", "hal/libjink_hal.a", "firmware/libjink_link.a", "firmware/libjink_app.a"]
 # Short names of Debian's copyright files whose SPDX name differs by more than a suffix.
 SPDX_NAMES = {"Expat": "MIT", "BSD-3-clause": "BSD-3-Clause", "BSD-3": "BSD-3-Clause", "BSD-2-clause": "BSD-2-Clause", "zlib/libpng": "Zlib",
