@@ -30,7 +30,8 @@ void add_options(CLI::App& cli, Options& options)
         "--cloud", options.cloud,
         "device and baud rate, DEV[:BAUD], on which a LiDAR's driver sends point clouds in compact frames");
     cli.add_option("--vehicle", options.vehicle_file, "vehicle file (YAML): limits, airframe, cost caps");
-    cli.add_option("--params", options.param_file, "parameter file, NAME,VALUE per line; wins over the vehicle file");
+    cli.add_option("--params", options.param_file,
+                   "parameter file, NAME,VALUE per line or as QGroundControl saves it; wins over the vehicle file");
     cli.add_option("--state", options.state_file,
                    "file that keeps parameters set over MAVLink or the bus; wins over the files above. Without this "
                    "option: the parameter file's name with .state, if there is one");

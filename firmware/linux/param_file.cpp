@@ -2,6 +2,7 @@
 #include "firmware/linux/param_file.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "firmware/linux/vehicle_file.hpp"
 
@@ -17,13 +18,43 @@ std::string_view trimmed(std::string_view text)
                                            : text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
-/// A line, split at the first comma, or else at the first blank.
 struct Line {
     std::string_view name;
     std::string_view value;
+    bool of_other_component = false;
 };
+
+/// A whole number from 0 to 255, as ids and types are.
+std::optional<unsigned> small_number(std::string_view text)
+{
+    float value = 0.0F;
+    const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+    return digits && parse_number(text, value) == NumberStatus::ok && value <= 255.0F
+               ? std::optional(static_cast<unsigned>(value))
+               : std::nullopt;
+}
+
+/// A line of QGroundControl's format: five columns, of which the first two and the last are ids and the type.
+std::optional<Line> split_columns(std::string_view line)
+{
+    std::vector<std::string_view> columns;
+    while (!line.empty() && columns.size() < 6) {
+        const std::size_t end = std::min(line.find_first_of(kBlanks), line.size());
+        columns.push_back(line.substr(0, end));
+        line = trimmed(line.substr(end));
+    }
+    if (columns.size() != 5 || !small_number(columns[0]) || !small_number(columns[1]) || !small_number(columns[4])) {
+        return std::nullopt;
+    }
+    return Line{columns[2], columns[3], small_number(columns[1]) != kComponentId};
+}
+
+/// Any other line: split at the first comma, or else at the first blank.
 Line split(std::string_view line)
 {
+    if (const std::optional<Line> columns = split_columns(line)) {
+        return *columns;
+    }
     const std::size_t comma = line.find(',');
     const std::size_t at = comma != std::string_view::npos ? comma : line.find_first_of(kBlanks);
     return at == std::string_view::npos ? Line{line, {}}
@@ -110,6 +141,8 @@ std::optional<ParamValues> apply_param_text(std::string_view text, const std::st
     const std::size_t before = complaints.size();
     ParamValues changed = values;
     std::array<std::size_t, app::kParamCount> seen{};
+    bool others = false;
+    bool own = false;
     if (text.starts_with("\xEF\xBB\xBF")) {
         text.remove_prefix(3);
     }
@@ -121,9 +154,14 @@ std::optional<ParamValues> apply_param_text(std::string_view text, const std::st
         if (line.empty()) {
             continue;
         }
-        if (const auto wrong = take(split(line), number, changed, seen)) {
+        const Line parts = split(line);
+        (parts.of_other_component ? others : own) = true;
+        if (const auto wrong = parts.of_other_component ? std::nullopt : take(parts, number, changed, seen)) {
             complaints.push_back({number, 0, *wrong, file});
         }
+    }
+    if (others && !own) {
+        complaints.push_back({0, 0, "has parameters of other components alone; jink is component 196", file});
     }
     return complaints.size() == before ? std::optional<ParamValues>(changed) : std::nullopt;
 }
@@ -179,6 +217,41 @@ std::string param_file_text(const ParamValues& values)
         const app::ParamInfo& info = app::param_table()[i];
         out += "# " + std::string(info.text) + "; " + to_text(info.low) + " to " + to_text(info.high) + "\n";
         out += std::string(info.name) + "," + to_text(values[i]) + "\n";
+    }
+    return out;
+}
+
+std::vector<std::size_t> setting_order(const ParamValues& values)
+{
+    std::vector<std::size_t> waiting(values.size());
+    std::iota(waiting.begin(), waiting.end(), std::size_t{0});
+    std::erase(waiting, static_cast<std::size_t>(app::Param::mode));
+    std::vector<std::size_t> order;
+    app::Parameters parameters;
+    for (bool any = true; any;) {
+        any = false;
+        std::vector<std::size_t> refused;
+        for (const std::size_t i : waiting) {
+            const bool taken = parameters.set(static_cast<app::Param>(i), values[i]) == app::ParamStatus::ok;
+            (taken ? order : refused).push_back(i);
+            any = any || taken;
+        }
+        waiting = std::move(refused);
+    }
+    order.insert(order.end(), waiting.begin(), waiting.end());
+    order.push_back(static_cast<std::size_t>(app::Param::mode));
+    return order;
+}
+
+std::string qgroundcontrol_text(const ParamValues& values, unsigned system)
+{
+    constexpr unsigned kReal32 = 9;  // MAV_PARAM_TYPE_REAL32, the type of every parameter on the link
+    const std::string ids = std::to_string(system) + "\t" + std::to_string(kComponentId) + "\t";
+    std::string out = "# Onboard parameters for Vehicle " + std::to_string(system) +
+                      "\n#\n# Stack: jink\n#\n# Vehicle-Id Component-Id Name Value Type\n";
+    for (const std::size_t i : setting_order(values)) {
+        out += ids + std::string(app::param_table()[i].name) + "\t" + to_text(values[i]) + "\t" +
+               std::to_string(kReal32) + "\n";
     }
     return out;
 }

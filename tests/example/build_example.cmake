@@ -13,6 +13,7 @@ run(${CMAKE_COMMAND} -S ${EXAMPLE} -B ${WORK}/build -G Ninja -DCMAKE_PREFIX_PATH
     "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror" -DCMAKE_BUILD_TYPE=Release)
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/example)
+run(${WORK}/build/method)
 
 # The C example: by jink::c, and by pkg-config as C11 without a warning.
 set(c_example ${EXAMPLE}/c_interface)

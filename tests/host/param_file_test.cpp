@@ -111,6 +111,104 @@ TEST(ParamFile, WhatItWritesReadsBackBitForBit)
     }
 }
 
+TEST(ParamFile, TakesItsOwnLinesOfAQGroundControlFile)
+{
+    Complaints complaints;
+    const auto values = apply_param_text("# Onboard parameters for Vehicle 3\n"
+                                         "#\n"
+                                         "# Vehicle-Id Component-Id Name Value Type\n"
+                                         "3\t1\tFRAME_CLASS\t1\t2\n"
+                                         "3\t1\tJNK_FLOOR\t77\t9\r\n"
+                                         "3\t196\tJNK_LOOKAHEAD\t12.500000000000000000\t9\r\n"
+                                         "3\t196\tTRK_LATENCY\t0.300000011920928955\t9\n"
+                                         "VEH_MASS,4\n",
+                                         "f", defaults(), complaints);
+    ASSERT_TRUE(values) << test::all_of(complaints);
+    EXPECT_EQ(at(*values, Param::lookahead), 12.5F);
+    EXPECT_EQ(at(*values, Param::track_latency), 0.3F);
+    EXPECT_EQ(at(*values, Param::mass), 4.0F);
+    EXPECT_EQ(at(*values, Param::floor), at(defaults(), Param::floor)) << "another component's";
+}
+
+TEST(ParamFile, RefusesWrongLinesOfAQGroundControlFile)
+{
+    const struct {
+        const char* line;
+        const char* complaint;
+    } cases[] = {
+        {"1\t196\tJNK_MODE\t3\t9", "'3' is out of range: 0 to 2"},
+        {"1\t196\tJNK_MOOD\t1\t9", "unknown parameter 'JNK_MOOD'; did you mean 'JNK_MODE'?"},
+        {"1\t196\tTRK_RADIUS\t1\t9", "TRK_RADIUS was given in line 1 already"},
+        {"1\t196\tVEH_MASS\tnan\t9", "'nan' is not finite"},
+        {"1\t196\tVEH_MASS\t9", "unknown parameter '1'"},         // no type
+        {"1\t196\tVEH_MASS\t4\t9\t9", "unknown parameter '1'"},   // a column more
+        {"1\t-196\tVEH_MASS\t4\t9", "unknown parameter '1'"},     // no id
+        {"256\t196\tVEH_MASS\t4\t9", "unknown parameter '256'"},  // no id
+        {"1\t452\tVEH_MASS\t4\t9", "unknown parameter '1'"},      // 196 in eight bits
+        {"1\t196\tVEH_MASS\t4\tfloat", "unknown parameter '1'"},  // no type
+        {"1\t196.0\tVEH_MASS\t4\t9", "unknown parameter '1'"},    // no id
+    };
+    for (const auto& c : cases) {
+        Complaints complaints;
+        EXPECT_FALSE(apply_param_text("TRK_RADIUS,2\n" + std::string(c.line) + "\n", "f", defaults(), complaints));
+        ASSERT_EQ(complaints.size(), 1U) << c.line << "\n" << test::all_of(complaints);
+        EXPECT_EQ(complaints[0].line, 2U) << c.line;
+        EXPECT_NE(with(complaints, c.complaint), nullptr) << c.line << "\n" << test::all_of(complaints);
+    }
+    Complaints complaints;
+    EXPECT_FALSE(apply_param_text("1\t1\tFRAME_CLASS\t1\t2\n", "f", defaults(), complaints));
+    EXPECT_NE(with(complaints, "has parameters of other components alone"), nullptr) << test::all_of(complaints);
+}
+
+TEST(ParamFile, EveryReachableSetIsAcceptedInItsSettingOrder)
+{
+    // Sets that fit as a whole, far from the defaults; floor, ceiling, weights and times need an order of their own.
+    const std::uint64_t seed = 11;
+    Random random(seed);
+    int table_order_fails = 0;
+    for (int i = 0; i < 50; ++i) {
+        ParamValues wanted = defaults();
+        const auto put = [&](Param p, float value) { wanted[static_cast<std::size_t>(p)] = value; };
+        put(Param::bounds, 3.0F);
+        put(Param::floor, random.uniform(-100.0F, 400.0F));
+        put(Param::ceiling, at(wanted, Param::floor) + random.uniform(4.0F, 200.0F));
+        put(Param::time_low, random.uniform(0.0F, 100.0F));
+        put(Param::time_high, at(wanted, Param::time_low) + random.uniform(1.0F, 100.0F));
+        put(Param::weight_smoothness, random.uniform(0.0F, 0.5F));
+        put(Param::weight_time, random.uniform(0.3F, 0.5F));
+        app::Parameters whole;
+        ASSERT_EQ(whole.set_all(wanted), app::ParamStatus::ok) << "seed " << seed << " case " << i;
+        app::Parameters one_by_one;
+        for (const std::size_t k : setting_order(wanted)) {
+            ASSERT_EQ(one_by_one.set(static_cast<Param>(k), wanted[k]), app::ParamStatus::ok)
+                << "seed " << seed << " case " << i << " " << app::param_table()[k].name;
+        }
+        ASSERT_EQ(one_by_one.values(), wanted);
+        app::Parameters by_table;
+        for (std::size_t k = 0; k < wanted.size(); ++k) {
+            table_order_fails += by_table.set(static_cast<Param>(k), wanted[k]) == app::ParamStatus::ok ? 0 : 1;
+        }
+        Complaints complaints;
+        EXPECT_EQ(apply_param_text(qgroundcontrol_text(wanted, 1), "f", defaults(), complaints), wanted)
+            << test::all_of(complaints);
+    }
+    EXPECT_GT(table_order_fails, 10) << "else this test shows nothing";
+}
+
+TEST(ParamFile, TheSettingOrderHasEachParameterOnceAndTheModeLastEvenIfNoneIsAccepted)
+{
+    ParamValues wanted{};
+    wanted.fill(-1e30F);  // out of every range
+    std::vector<std::size_t> order = setting_order(wanted);
+    EXPECT_EQ(order.back(), static_cast<std::size_t>(Param::mode));
+    EXPECT_EQ(setting_order(defaults()).back(), static_cast<std::size_t>(Param::mode));
+    std::sort(order.begin(), order.end());
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+        ASSERT_EQ(order.at(k), k);
+    }
+    EXPECT_EQ(order.size(), wanted.size());
+}
+
 TEST(ApplyTogether, ASetThatOnlyFitsAsAWholeIsTaken)
 {
     // GEO_K_S = 0 alone leaves closeness 0.8, more than it may have; with GEO_K_T = 0.5 it is 0.5.

@@ -17,6 +17,7 @@ void add_campaign(CLI::App& jink);
 void add_check(CLI::App& jink);
 void add_log(CLI::App& jink);
 void add_mesh(CLI::App& jink);
+void add_parameters(CLI::App& jink);
 void add_plan(CLI::App& jink);
 void add_reach(CLI::App& jink);
 void add_report(CLI::App& jink);

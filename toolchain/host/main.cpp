@@ -14,6 +14,7 @@ int main(int argc, char** argv)
         jink::host::add_check(app);
         jink::host::add_log(app);
         jink::host::add_mesh(app);
+        jink::host::add_parameters(app);
         jink::host::add_plan(app);
         jink::host::add_reach(app);
         jink::host::add_report(app);
