@@ -4,7 +4,7 @@
 
     report.py --run run.json --out report.html
 
-Wants Debian's python3-matplotlib. Exit status 1, and a line that says why, when the run cannot be read or the page not
+Wants Debian's python3-matplotlib. Exit status 2, and a line that says why, when the run cannot be read or the page not
 be written.
 """
 import argparse
@@ -14,7 +14,6 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-import page  # noqa: E402
 import run  # noqa: E402
 
 
@@ -25,6 +24,8 @@ def main():
     arguments = parser.parse_args()
     try:
         flights = run.read(arguments.run)
+        import page  # matplotlib takes its time: a run that cannot be read is refused without it
+
         with multiprocessing.get_context("fork").Pool(os.cpu_count() or 1) as pool:
             html = page.build(flights, pool.map)
         pathlib.Path(arguments.out).write_text(html, encoding="utf-8")

@@ -6,6 +6,7 @@ type is refused with BadRun.
 """
 import json
 import math
+import os
 
 
 class BadRun(Exception):
@@ -152,6 +153,8 @@ class Flight:
 
 def read(path):
     """The flights of a run file, in its order."""
+    if os.path.exists(path) and not os.path.isfile(path):
+        raise BadRun(f"{path}: is not a regular file")  # reading a FIFO would wait for a writer
     try:
         with open(path, encoding="utf-8") as file:
             data = json.load(file)
@@ -161,4 +164,7 @@ def read(path):
         raise BadRun(f"{path}: is not JSON: {error}") from error
     if not isinstance(data, dict) or not isinstance(data.get("flights"), list):
         raise BadRun(f"{path}: holds no list of flights")
-    return [Flight(flight) for flight in data["flights"]]
+    try:
+        return [Flight(flight) for flight in data["flights"]]
+    except BadRun as error:
+        raise BadRun(f"{path}: {error}") from error
