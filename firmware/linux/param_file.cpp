@@ -11,6 +11,9 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
 
+/// Errors named of one file; a file of another kind has one in each line.
+constexpr std::size_t kMaxErrors = 20;
+
 std::string_view trimmed(std::string_view text)
 {
     const std::size_t first = text.find_first_not_of(kBlanks);
@@ -158,6 +161,10 @@ std::optional<ParamValues> apply_param_text(std::string_view text, const std::st
         (parts.of_other_component ? others : own) = true;
         if (const auto wrong = parts.of_other_component ? std::nullopt : take(parts, number, changed, seen)) {
             complaints.push_back({number, 0, *wrong, file});
+        }
+        if (complaints.size() == before + kMaxErrors && !text.empty()) {
+            complaints.push_back({number + 1, 0, "too many errors: nothing is read from this line on", file});
+            break;
         }
     }
     if (others && !own) {

@@ -22,7 +22,23 @@ const char* kind_of(const YAML::Node& node)
 }
 
 /// Scalars in quotes are text even if they look like a number: yaml-cpp marks them with the tag "!".
-bool is_plain(const YAML::Node& node) { return node.IsScalar() && node.Tag() != "!"; }
+bool is_quoted(const YAML::Node& node) { return node.IsScalar() && node.Tag() == "!"; }
+
+/// A tag that the file gives, as !!binary. No value of ours has one: what the tag asks for would be ignored.
+bool has_tag(const YAML::Node& node) { return !node.Tag().empty() && node.Tag() != "?" && node.Tag() != "!"; }
+
+bool is_plain(const YAML::Node& node) { return node.IsScalar() && !is_quoted(node) && !has_tag(node); }
+
+std::string tag_text(const YAML::Node& node) { return "no tag is wanted, such as " + in_quotes(node.Tag()); }
+
+/// The place of a byte of a text.
+Complaint complaint_at(std::string_view text, std::size_t at, const std::string& file, std::string what)
+{
+    const std::string_view before = text.substr(0, at);
+    const auto line = static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n')) + 1;
+    const std::size_t start = before.rfind('\n');
+    return {line, start == std::string_view::npos ? at + 1 : at - start, std::move(what), file};
+}
 
 }  // namespace
 
@@ -38,9 +54,11 @@ std::optional<float> element(const YAML::Node& node, Range range, const std::str
                              Complaints& complaints)
 {
     if (!is_plain(node)) {
-        complaints.push_back(
-            complaint_at(node.Mark(), file,
-                         where + ": a number is wanted, not " + (node.IsScalar() ? "quoted text" : kind_of(node))));
+        complaints.push_back(complaint_at(node.Mark(), file,
+                                          where + ": a number is wanted, not " +
+                                              (has_tag(node)     ? "a value with the tag " + in_quotes(node.Tag())
+                                               : is_quoted(node) ? "quoted text"
+                                                                 : kind_of(node))));
         return std::nullopt;
     }
     float value = 0.0F;
@@ -54,6 +72,10 @@ std::optional<float> element(const YAML::Node& node, Range range, const std::str
 std::optional<Vec3> vector_of(const YAML::Node& node, Range range, const std::string& where, const std::string& file,
                               Complaints& complaints)
 {
+    if (has_tag(node)) {
+        complaints.push_back(complaint_at(node.Mark(), file, where + ": " + tag_text(node)));
+        return std::nullopt;
+    }
     if (!node.IsSequence()) {
         complaints.push_back(
             complaint_at(node.Mark(), file, where + ": a list of three numbers is wanted, not " + kind_of(node)));
@@ -76,6 +98,11 @@ std::optional<Vec3> vector_of(const YAML::Node& node, Range range, const std::st
 
 std::optional<YAML::Node> parse_yaml(const std::string& text, const std::string& file, Complaints& complaints)
 {
+    // yaml-cpp takes other encodings too, and may end the document at a zero byte.
+    if (const std::size_t zero = text.find('\0'); zero != std::string::npos) {
+        complaints.push_back(complaint_at(text, zero, file, "a zero byte: the file has to be text in UTF-8"));
+        return std::nullopt;
+    }
     try {
         std::vector<YAML::Node> documents = YAML::LoadAll(text);
         if (documents.size() != 1) {
@@ -105,6 +132,11 @@ YamlMap::YamlMap(const YAML::Node& node, std::string where, std::string file, Co
     if (!is_map_) {
         complain_at(mark_, (where_.empty() ? std::string() : where_ + ": ") +
                                "a mapping of keys to values is wanted, not " + kind_of(node));
+        return;
+    }
+    if (has_tag(node)) {
+        complain_at(mark_, (where_.empty() ? std::string() : where_ + ": ") + tag_text(node));
+        is_map_ = false;
         return;
     }
     if (node.size() > kMaxKeys) {
@@ -224,6 +256,10 @@ std::optional<std::string> YamlMap::text(std::string_view key, Need need)
         complain(key, std::string("text is wanted, not ") + kind_of(entry->value));
         return std::nullopt;
     }
+    if (has_tag(entry->value)) {
+        complain(key, tag_text(entry->value));
+        return std::nullopt;
+    }
     const std::string& value = entry->value.Scalar();
     if (std::any_of(value.begin(), value.end(),
                     [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; })) {
@@ -270,8 +306,9 @@ std::optional<std::vector<YAML::Node>> YamlMap::list(std::string_view key, Need 
     if (entry == nullptr) {
         return std::nullopt;
     }
-    if (!entry->value.IsSequence()) {
-        complain(key, std::string("a list is wanted, not ") + kind_of(entry->value));
+    if (!entry->value.IsSequence() || has_tag(entry->value)) {
+        complain(key, has_tag(entry->value) ? tag_text(entry->value)
+                                            : std::string("a list is wanted, not ") + kind_of(entry->value));
         return std::nullopt;
     }
     return std::vector<YAML::Node>(entry->value.begin(), entry->value.end());

@@ -14,8 +14,8 @@
 
 namespace jink::files {
 
-/// The single document of a YAML file. If the file cannot be read, is not YAML, or holds none or several documents:
-/// complaints and nothing.
+/// The single document of a YAML file. If the file cannot be read, is not YAML, holds a zero byte (UTF-16 does) or none
+/// or several documents: complaints and nothing.
 [[nodiscard]] std::optional<YAML::Node> load_yaml(const std::filesystem::path& path, Complaints& complaints);
 
 /// The same for text already read; `file` is the file's name in complaints.
@@ -23,7 +23,7 @@ namespace jink::files {
                                                    Complaints& complaints);
 
 /// A mapping of a YAML file, read key by key with a complaint for each error: not a mapping at all, a key twice, a
-/// value of another type, not finite, out of range, missing, and, on `finish`, unknown keys.
+/// value of another type, a tag, not finite, out of range, missing, and, on `finish`, unknown keys.
 ///
 /// Each reader returns a valid value, or nothing after a complaint. An absent key gives nothing, with a complaint only
 /// if it is `required`.

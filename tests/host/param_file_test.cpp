@@ -45,6 +45,22 @@ TEST(ParamFile, AnEmptyFileChangesNothing)
     EXPECT_TRUE(complaints.empty());
 }
 
+TEST(ParamFile, StopsAtTwentyErrorsAndSaysWhere)
+{
+    std::string text;
+    for (int i = 0; i < 20; ++i) {
+        text += "NOT_A_NAME,1\n";
+    }
+    Complaints complaints;
+    EXPECT_FALSE(apply_param_text(text, "f", defaults(), complaints));
+    EXPECT_EQ(complaints.size(), 20U) << "nothing follows that would not be checked";
+    complaints.clear();
+    EXPECT_FALSE(apply_param_text(text + "# more\n" + text, "f", defaults(), complaints));
+    ASSERT_EQ(complaints.size(), 21U);
+    EXPECT_EQ(complaints.back().line, 21U);
+    EXPECT_NE(with(complaints, "too many errors: nothing is read from this line on"), nullptr);
+}
+
 TEST(ParamFile, RefusesEachWrongLineByItsNumber)
 {
     const struct {

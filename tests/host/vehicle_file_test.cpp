@@ -156,6 +156,9 @@ TEST(VehicleFile, EveryComplaintByLine)
         {"air_density: 12", "air_density: '12' is out of range: 0.1 to 2"},
         {"air_density: thick", "air_density: 'thick' is not a number"},
         {"air_density: \"1.2\"", "air_density: a number is wanted, not quoted text"},
+        {"air_density: !!int 1", "air_density: a number is wanted, not a value with the tag 'tag:yaml.org,2002:int'"},
+        {"name: !other default", "name: no tag is wanted, such as '!other'"},
+        {"caps: !!set {time_low: 1}", "caps: no tag is wanted, such as 'tag:yaml.org,2002:set'"},
         {"air_density: [1.2]", "air_density: a number is wanted, not a list"},
         {"air_density: {a: 1}", "air_density: a number is wanted, not a mapping"},
         {"air_density:", "air_density: has no value"},
@@ -182,6 +185,16 @@ TEST(VehicleFile, EveryComplaintByLine)
     EXPECT_FALSE(read_vehicle_text("kind: balloon\n" + kGoodVehicle.substr(kGoodVehicle.find('\n') + 1), complaints));
     EXPECT_NE(with(complaints, "kind: 'balloon' is none of: multirotor, fixed_wing"), nullptr)
         << test::all_of(complaints);
+}
+
+TEST(VehicleFile, RefusesAZeroByteByItsPlace)
+{
+    Complaints complaints;
+    EXPECT_FALSE(read_vehicle_text(kGoodVehicle + "name: a" + std::string(1, '\0') + "b\n", complaints));
+    ASSERT_EQ(complaints.size(), 1U);
+    EXPECT_EQ(complaints[0].line, 13U);
+    EXPECT_EQ(complaints[0].column, 8U);
+    EXPECT_NE(with(complaints, "a zero byte: the file has to be text in UTF-8"), nullptr);
 }
 
 TEST(VehicleFile, RefusesWhatIsNoYamlMapping)
