@@ -255,7 +255,7 @@ def all_formats(build, work):
     yield Format("mesh (jink mesh build)", ".obj", MESH, lambda f, o: [jink, "mesh", "build", f, "--out", o / "map"], damages_of_mesh, has_lines=False)
     yield Format("flight log (jink log)", ".ulg", log, lambda f, o: [jink, "log", f, "--csv", o / "csv"], damages_of_ulog(log), has_lines=False, excused=WAITS)
     yield Format("flight log (replay)", ".ulg", log, lambda f, o: [jink, "log", "--replay", f], damages_of_ulog(log), has_lines=False, excused=WAITS)
-    yield Format("run (jink report)", ".json", run, lambda f, o: [jink, "report", "--run", f, "--out", o / "report.html"], damages_of_run(run), has_lines=False)
+    yield Format("run (jink report)", ".json", run, lambda f, o: [jink, "report", f, "--out", o / "report.html"], damages_of_run(run), has_lines=False)
     yield Format("recording (jink-sim replay)", ".wire", WIRE, lambda f, o: [sim, "replay", f], damages_of_wire(WIRE), has_lines=False, statuses=(1, 2),
                  excused={**WAITS, "packed twice": "counts as a recording without records"})
     yield Format("recorded encounter (jink-sim recorded)", ".daa", DAA, lambda f, o: [sim, "recorded", f], damages_of_daa, statuses=(1, 2), excused=WAITS)

@@ -32,8 +32,15 @@ bool is_flight_log(const fs::path& file)
     return magic == "ULog" || file.extension() == ".ulg";
 }
 
-/// The file that an input names: of a folder its run.json.
-fs::path file_of(const fs::path& input) { return (fs::is_directory(input) ? input / "run.json" : input).lexically_normal(); }
+/// The file that an input names: of a folder its run.json. A FIFO is refused: its writer may never come.
+fs::path file_of(const fs::path& input)
+{
+    const fs::path file = (fs::is_directory(input) ? input / "run.json" : input).lexically_normal();
+    if (fs::exists(file) && !fs::is_regular_file(file)) {
+        throw BadFlight(file.string() + ": is not a regular file");
+    }
+    return file;
+}
 
 PageSource read(const fs::path& file) { return is_flight_log(file) ? read_flight_log(file) : read_run(file); }
 
