@@ -130,7 +130,8 @@ def bundled_entries():
     packages = json.loads((TOP / "toolchain/viewer/package-lock.json").read_text(encoding="utf-8"))["packages"]
     for name in sorted(packages[""]["dependencies"]):
         entry = packages[f"node_modules/{name}"]
-        yield {"SPDXID": f"SPDXRef-npm-{name}", "name": name, "versionInfo": entry["version"], "downloadLocation": entry["resolved"],
+        yield {"SPDXID": f"SPDXRef-npm-{name}", "name": name, "versionInfo": entry["version"],
+               "downloadLocation": f"https://registry.npmjs.org/{name}/-/{name}-{entry['version']}.tgz",
                "filesAnalyzed": False, "licenseConcluded": "NOASSERTION", "licenseDeclared": entry["license"], "copyrightText": "NOASSERTION",
                "externalRefs": [{"referenceCategory": "PACKAGE-MANAGER", "referenceType": "purl",
                                  "referenceLocator": f"pkg:npm/{name}@{entry['version']}"}]}
