@@ -11,7 +11,6 @@ from collections.abc import Callable
 import mutations
 
 # jink-sim and jink log open what they are given, and wait.
-WAITS = {"a FIFO without a writer": "waits for one"}
 NO_PARAMETER = {"empty": "a file without parameters is one"}
 TOP = pathlib.Path(__file__).resolve().parents[2]
 
@@ -243,7 +242,7 @@ def all_formats(build, work):
     yield Format("vehicle (jinkd)", ".yaml", VEHICLE, lambda f, o: daemon("--vehicle", f, "--log", o), some(vehicle), runs_on=True, patience=0.5)
     yield Format("problem (jink plan)", ".yaml", PROBLEM, lambda f, o: [jink, "plan", f], problem, good_status=1)
     yield Format("scenario (jink check)", ".yaml", SCENARIO, lambda f, o: [jink, "check", "--as", "scenario", f], scenario)
-    yield Format("scenario (jink-sim fly)", ".yaml", SCENARIO, lambda f, o: [sim, "fly", f, "--out", o / "run"], some(scenario), statuses=(1, 2))
+    yield Format("scenario (jink-sim fly)", ".yaml", SCENARIO, lambda f, o: [sim, "fly", f, "--out", o / "run"], some(scenario))
     yield Format("parameters (jink check)", ".param", PARAMETERS, lambda f, o: [jink, "check", "--as", "params", f], damages_of_parameters, excused=NO_PARAMETER)
     yield Format("parameters (jinkd)", ".param", PARAMETERS, lambda f, o: daemon("--params", f), damages_of_parameters, runs_on=True, patience=0.5,
                  excused=NO_PARAMETER)
@@ -253,14 +252,13 @@ def all_formats(build, work):
     yield Format("map (jink mesh show)", ".map", jmap, lambda f, o: [jink, "mesh", "show", f], damages_of_map(jmap), has_lines=False)
     yield Format("map (jinkd)", ".map", jmap, lambda f, o: daemon("--map", f), some(damages_of_map(jmap)), has_lines=False, runs_on=True, patience=0.5)
     yield Format("mesh (jink mesh build)", ".obj", MESH, lambda f, o: [jink, "mesh", "build", f, "--out", o / "map"], damages_of_mesh, has_lines=False)
-    yield Format("flight log (jink log)", ".ulg", log, lambda f, o: [jink, "log", f, "--csv", o / "csv"], damages_of_ulog(log), has_lines=False, excused=WAITS)
-    yield Format("flight log (replay)", ".ulg", log, lambda f, o: [jink, "log", "--replay", f], damages_of_ulog(log), has_lines=False, excused=WAITS)
+    yield Format("flight log (jink log)", ".ulg", log, lambda f, o: [jink, "log", f, "--csv", o / "csv"], damages_of_ulog(log), has_lines=False)
+    yield Format("flight log (replay)", ".ulg", log, lambda f, o: [jink, "log", "--replay", f], damages_of_ulog(log), has_lines=False)
     yield Format("run (jink report)", ".json", run, lambda f, o: [jink, "report", f, "--out", o / "report.html"], damages_of_run(run), has_lines=False)
-    yield Format("recording (jink-sim replay)", ".wire", WIRE, lambda f, o: [sim, "replay", f], damages_of_wire(WIRE), has_lines=False, statuses=(1, 2),
-                 excused={**WAITS, "packed twice": "counts as a recording without records"})
-    yield Format("recorded encounter (jink-sim recorded)", ".daa", DAA, lambda f, o: [sim, "recorded", f], damages_of_daa, statuses=(1, 2), excused=WAITS)
-    yield Format("encounter model (jink-sim manned)", ".txt", model, lambda f, o: [sim, "manned", f, "--count", "1"], model_damages(model), has_lines=False, statuses=(1, 2), excused=WAITS,
+    yield Format("recording (jink-sim replay)", ".wire", WIRE, lambda f, o: [sim, "replay", f], damages_of_wire(WIRE), has_lines=False)
+    yield Format("recorded encounter (jink-sim recorded)", ".daa", DAA, lambda f, o: [sim, "recorded", f], damages_of_daa)
+    yield Format("encounter model (jink-sim manned)", ".txt", model, lambda f, o: [sim, "manned", f, "--count", "1"], model_damages(model), has_lines=False,
                  checks_good=False)  # it has no track that is low enough to be flown beside
     yield Format("seeds (jink-sim encounters)", ".txt", SEEDS, lambda f, o: [sim, "encounters", "--seed-file", f, "--out", o / "blocks"],
                  with_lines(SEEDS, ("a text", "x", 1), ("NaN", "nan", 1), ("a negative number", "-1", 1), ("a fraction", "1.5", 1), ("too large", "9" * 30, 1),
-                            ("two numbers", "11 12", 1), ("hexadecimal", "0x11", 1), ("a unit behind", "11s", 1), ("a sign", "+11", 1)), excused=WAITS)
+                            ("two numbers", "11 12", 1), ("hexadecimal", "0x11", 1), ("a unit behind", "11s", 1), ("a sign", "+11", 1)))

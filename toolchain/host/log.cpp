@@ -5,6 +5,7 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "firmware/linux/flight_log/replay.hpp"
@@ -32,8 +33,14 @@ struct LogCommand {
 
 std::ifstream opened(const std::string& path)
 {
-    std::ifstream file(path, std::ios::binary);
-    if (!file || !std::filesystem::is_regular_file(path)) {
+    // Opening a FIFO would wait for a writer.
+    std::error_code error;
+    const bool is_file = std::filesystem::is_regular_file(path, error);
+    std::ifstream file;
+    if (is_file) {
+        file.open(path, std::ios::binary);
+    }
+    if (!is_file || !file) {
         stop(kExitBadInput, path + " cannot be read");
     }
     return file;

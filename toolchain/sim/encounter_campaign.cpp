@@ -6,7 +6,6 @@
 #include <charconv>
 #include <cmath>
 #include <exception>
-#include <fstream>
 #include <map>
 #include <mutex>
 #include <set>
@@ -15,6 +14,7 @@
 
 #include "toolchain/sim/encounter_summary.hpp"
 #include "toolchain/sim/in_process.hpp"
+#include "toolchain/sim/input_file.hpp"
 #include "toolchain/sim/scenario_writer.hpp"
 #include "toolchain/sim/source_digest.hpp"
 
@@ -41,10 +41,7 @@ bool read(const std::string& text, Number& value)
 
 std::vector<std::uint64_t> seeds_of(const fs::path& file)
 {
-    std::ifstream in(file);
-    if (!in) {
-        throw std::runtime_error(file.string() + " cannot be read");
-    }
+    std::ifstream in = open_input(file);
     std::vector<std::uint64_t> seeds;
     std::set<std::uint64_t> known;
     std::size_t at = 0;

@@ -3,12 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <numbers>
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
+
+#include "toolchain/sim/input_file.hpp"
 
 namespace jink::sim {
 namespace {
@@ -110,10 +111,7 @@ std::size_t EncounterModel::Node::row(const std::vector<std::size_t>& values) co
 
 EncounterModel EncounterModel::load(const std::filesystem::path& file)
 {
-    std::ifstream in(file);
-    if (!in) {
-        throw std::runtime_error(file.string() + ": cannot be read");
-    }
+    std::ifstream in = open_input(file);
     return read(in, file.filename().string());
 }
 

@@ -30,7 +30,7 @@ namespace {
 using namespace jink::sim;
 namespace fs = std::filesystem;
 
-/// Exit status for a wrong command line, and of `encounters` for an invalid folder or list.
+/// Exit status for a wrong command line, a malformed file, and what else keeps a command from its work.
 constexpr int kRefused = 2;
 
 struct Options {
@@ -393,6 +393,6 @@ int main(int argc, char** argv)
         return demo_command->parsed() ? demo(options) : crowd_command->parsed() ? crowd(options) : random(options);
     } catch (const std::exception& e) {
         std::cerr << "jink-sim: " << e.what() << "\n";
-        return encounters_command.parsed() || swarm_command.parsed() ? kRefused : EXIT_FAILURE;
+        return kRefused;
     }
 }

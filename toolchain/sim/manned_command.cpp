@@ -22,9 +22,17 @@ std::vector<MannedResult> fly_all(const EncounterModel& model, const MannedOptio
     const MannedSensor sensor = options.sensor == "adsb" ? MannedSensor::adsb : MannedSensor::range;
     std::vector<MannedResult> results(options.count);
     std::atomic<std::size_t> next = 0;
+    std::exception_ptr failure;
+    std::atomic<bool> failed = false;
     const auto work = [&] {
-        for (std::size_t i = next++; i < results.size(); i = next++) {
-            results[i] = fly_manned(model, sensor, options.from + i, parameters, options.board);
+        for (std::size_t i = next++; i < results.size() && !failed; i = next++) {
+            try {
+                results[i] = fly_manned(model, sensor, options.from + i, parameters, options.board);
+            } catch (...) {
+                if (!failed.exchange(true)) {
+                    failure = std::current_exception();
+                }
+            }
         }
     };
     const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
@@ -34,6 +42,9 @@ std::vector<MannedResult> fly_all(const EncounterModel& model, const MannedOptio
     }
     for (std::thread& thread : threads) {
         thread.join();
+    }
+    if (failure) {
+        std::rethrow_exception(failure);
     }
     return results;
 }

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
 
+#include "toolchain/sim/input_file.hpp"
 #include "toolchain/sim/recorded_columns.hpp"
 
 namespace jink::sim {
@@ -152,10 +152,7 @@ RecordedEncounter read_encounter(std::istream& in, const std::string& name) { re
 
 RecordedEncounter read_encounter(const std::filesystem::path& file)
 {
-    std::ifstream in(file);
-    if (!in) {
-        throw std::runtime_error(file.string() + ": cannot be read");
-    }
+    std::ifstream in = open_input(file);
     return read_encounter(in, file.string());
 }
 

@@ -16,6 +16,8 @@
 namespace jink::sim {
 namespace {
 
+constexpr int kBadInput = 2;  ///< exit status
+
 struct SpokenText {
     double time = 0.0;
     std::string text;
@@ -64,7 +66,7 @@ int run_replay(const ReplayOptions& options, std::ostream& out, std::ostream& er
         for (const files::Complaint& complaint : complaints) {
             errors << "jink-sim: " << to_string(complaint) << "\n";
         }
-        return EXIT_FAILURE;
+        return kBadInput;
     }
     const WireFile file = read_wire_file(options.file);
     const std::vector<SpokenText> texts = options.json ? std::vector<SpokenText>() : texts_of(file.records);
@@ -81,7 +83,7 @@ int run_replay(const ReplayOptions& options, std::ostream& out, std::ostream& er
         const double end = file.records.empty() ? 0.0 : file.records.back().time;
         errors << "jink-sim: " << options.file << ": " << file.fault << "; read until there: " << file.records.size()
                << " records, " << end << " s\n";
-        return EXIT_FAILURE;
+        return kBadInput;
     }
     return EXIT_SUCCESS;
 }

@@ -6,11 +6,12 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <iterator>
 #include <stdexcept>
 
 #include <lzma.h>
+
+#include "toolchain/sim/input_file.hpp"
 
 namespace jink::sim {
 namespace {
@@ -104,6 +105,8 @@ WireFile read_wire(std::span<const std::byte> bytes)
         WireFile file;
         if (!is_packed(unpacked.bytes)) {
             file = read_wire(unpacked.bytes);
+        } else {
+            file.fault = "packed twice";
         }
         file.fault = unpacked.fault.empty() ? file.fault : unpacked.fault;
         return file;
@@ -141,10 +144,7 @@ WireFile read_wire(std::span<const std::byte> bytes)
 
 WireFile read_wire_file(const std::filesystem::path& path)
 {
-    std::ifstream in(path, std::ios::binary);
-    if (!in) {
-        throw std::runtime_error(path.string() + " cannot be opened");
-    }
+    std::ifstream in = open_input(path);
     const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
     if (in.bad()) {
         throw std::runtime_error(path.string() + " cannot be read");
