@@ -191,6 +191,7 @@ void read_decision(const Node& node, PageFlight& flight)
     PageDecision decision;
     decision.text = node["inside"]["first_candidate"].text();
     std::vector<std::string> status;
+    status.reserve(fan.size());
     for (const Node& item : fan) {
         status.push_back(item["status"].text());
     }
@@ -253,7 +254,7 @@ void read_events(const Node& node, PageFlight& flight)
     }
     for (std::size_t i = 1; i < flight.phases.size(); ++i) {
         const PagePhase& now = flight.phases[i];
-        const char* const change = now.in_control                  ? "jink has control: mode "
+        const char* const change = now.in_control                    ? "jink has control: mode "
                                    : flight.phases[i - 1].in_control ? "jink has no longer control: mode "
                                                                      : "mode ";
         flight.events.push_back({now.from, "state", change + now.mode});

@@ -33,7 +33,10 @@ bool is_flight_log(const fs::path& file)
 }
 
 /// The file that an input names: of a folder its run.json.
-fs::path file_of(const fs::path& input) { return (fs::is_directory(input) ? input / "run.json" : input).lexically_normal(); }
+fs::path file_of(const fs::path& input)
+{
+    return (fs::is_directory(input) ? input / "run.json" : input).lexically_normal();
+}
 
 PageSource read(const fs::path& file) { return is_flight_log(file) ? read_flight_log(file) : read_run(file); }
 
