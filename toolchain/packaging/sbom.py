@@ -3,8 +3,9 @@
 
     sbom.py --build FOLDER --out FILE [--version VERSION]
 
-three is bundled into the page of `jink report`; toolchain/viewer/package-lock.json has its version. Shared libraries are those that ldd names, headers those that ninja recorded for every object of a program. Names,
-versions and licences come from dpkg and the copyright files of the packages.
+Shared libraries are those that ldd names, headers those that ninja recorded for every object of a program. Names,
+versions and licences come from dpkg and the copyright files of the packages. What is bundled into the page of
+`jink report` (three) is in toolchain/viewer/package-lock.json.
 """
 import argparse
 import datetime
@@ -129,7 +130,7 @@ def bundled_entries():
     packages = json.loads((TOP / "toolchain/viewer/package-lock.json").read_text(encoding="utf-8"))["packages"]
     for name in sorted(packages[""]["dependencies"]):
         entry = packages[f"node_modules/{name}"]
-        yield {"SPDXID": f"SPDXRef-npm-{name}", "name": name, "versionInfo": entry["version"], "downloadLocation": entry["resolved"],
+        yield {"SPDXID": f"SPDXRef-npm-{name}", "name": name, "versionInfo": entry["version"], "downloadLocation": entry.get("resolved", "NOASSERTION"),
                "filesAnalyzed": False, "licenseConcluded": "NOASSERTION", "licenseDeclared": entry["license"], "copyrightText": "NOASSERTION",
                "externalRefs": [{"referenceCategory": "PACKAGE-MANAGER", "referenceType": "purl",
                                  "referenceLocator": f"pkg:npm/{name}@{entry['version']}"}]}
