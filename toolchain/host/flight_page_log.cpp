@@ -87,8 +87,8 @@ private:
     void read();
     void note_data(const ulog::Format& format, std::span<const std::byte> content);
     void note_step(const LogFields& step, double time);
-    void note_decision(const LogFields& decision, double time);
-    void note_candidate(const LogFields& candidate, double time);
+    void note_decision(const LogFields& topic, double time);
+    void note_candidate(const LogFields& topic, double time);
     PageDecision& decision(unsigned number, double time);
     void note_text(std::span<const std::byte> content);
     void sample(PageFlight& flight) const;

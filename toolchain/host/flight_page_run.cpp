@@ -191,6 +191,7 @@ void read_decision(const Node& node, PageFlight& flight)
     PageDecision decision;
     decision.text = node["inside"]["first_candidate"].text();
     std::vector<std::string> status;
+    status.reserve(fan.size());
     for (const Node& item : fan) {
         status.push_back(item["status"].text());
     }

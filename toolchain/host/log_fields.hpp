@@ -7,6 +7,7 @@
 #include <limits>
 #include <span>
 #include <string_view>
+#include <utility>
 
 #include "firmware/linux/flight_log/ulog_reader.hpp"
 
@@ -39,19 +40,31 @@ public:
     }
 
 private:
+    template <class T>
+    static double as(std::span<const std::byte> bytes)
+    {
+        return static_cast<double>(ulog::read_number<T>(bytes));
+    }
     static double value(std::string_view type, std::span<const std::byte> bytes)
     {
-        const auto as = [&]<class T>(T) { return static_cast<double>(ulog::read_number<T>(bytes)); };
-        return type == "float"      ? as(float{})
-               : type == "double"   ? as(double{})
-               : type == "uint64_t" ? as(std::uint64_t{})
-               : type == "int64_t"  ? as(std::int64_t{})
-               : type == "uint32_t" ? as(std::uint32_t{})
-               : type == "int32_t"  ? as(std::int32_t{})
-               : type == "uint16_t" ? as(std::uint16_t{})
-               : type == "int16_t"  ? as(std::int16_t{})
-               : type == "int8_t"   ? as(std::int8_t{})
-                                    : as(std::uint8_t{});
+        using Read = double (*)(std::span<const std::byte>);
+        constexpr auto kTypes = std::to_array<std::pair<std::string_view, Read>>({
+            {"float", as<float>},
+            {"double", as<double>},
+            {"uint64_t", as<std::uint64_t>},
+            {"int64_t", as<std::int64_t>},
+            {"uint32_t", as<std::uint32_t>},
+            {"int32_t", as<std::int32_t>},
+            {"uint16_t", as<std::uint16_t>},
+            {"int16_t", as<std::int16_t>},
+            {"int8_t", as<std::int8_t>},
+        });
+        for (const auto& [name, read] : kTypes) {
+            if (type == name) {
+                return read(bytes);
+            }
+        }
+        return as<std::uint8_t>(bytes);  // also bool and char
     }
 
     const ulog::Format& format_;
