@@ -7,7 +7,9 @@
 namespace jink::c_interface {
 namespace {
 
-std::array<std::atomic<Session*>, JINK_MAX_HANDLES> sessions{};
+// Global because a handle has to be known as one before it is used.
+std::array<std::atomic<Session*>, JINK_MAX_HANDLES>
+    sessions{};  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 
 }  // namespace
 
