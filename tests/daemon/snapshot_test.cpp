@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Events of the live page, made of messages of the flight log: read back by another JSON reader.
+#include <algorithm>
 #include <array>
-#include <cmath>
+#include <cstdint>
 #include <limits>
 #include <random>
+#include <string>
+#include <string_view>
+#include <vector>
 
+#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "firmware/linux/live_page/snapshot.hpp"
-#include "tests/daemon/harness.hpp"
 
 namespace jink::livepage {
 namespace {
@@ -60,7 +64,8 @@ protected:
     void take_text(std::string_view text)
     {
         std::array<std::byte, 512> buffer{};
-        snapshot.take(ulog::Composer(buffer).begin(ulog::Type::text).put(ulog::Level::warning).put(kStart).put_text(text).end());
+        snapshot.take(
+            ulog::Composer(buffer).begin(ulog::Type::text).put(ulog::Level::warning).put(kStart).put_text(text).end());
     }
     [[nodiscard]] Json event(bool all = false) const { return Json::parse(snapshot.json(all, {1, 2, 3, 4})); }
 };
@@ -174,13 +179,19 @@ TEST_F(SnapshotTest, AnyMessagesGiveJson)
     const std::uint64_t seed = std::random_device{}();
     std::mt19937_64 random(seed);
     constexpr std::string_view kTypes = "DDDDLPOSX";
+    constexpr std::array<std::size_t, 3> kSizes{2 + flightlog::kBytesOf<StepTopic>, 2 + flightlog::kBytesOf<OwnTopic>,
+                                                2 + flightlog::kBytesOf<TrackTopic>};
+    constexpr std::size_t kBools = 7;  // at the end of a step's topic
     for (int i = 0; i < 20'000; ++i) {
-        std::vector<std::byte> bytes(random() % 200);
+        std::vector<std::byte> bytes(random() % 2 == 0 ? 10 + random() % 200 : kSizes[random() % kSizes.size()]);
         for (std::byte& b : bytes) {
             b = static_cast<std::byte>(random());
         }
-        if (bytes.size() > 2 && random() % 4 != 0) {
-            bytes[0] = static_cast<std::byte>(random() % 9);
+        for (std::size_t k = bytes.size() - kBools; k < bytes.size(); ++k) {
+            bytes[k] &= std::byte{1};
+        }
+        if (random() % 4 != 0) {
+            bytes[0] = static_cast<std::byte>(random() % 4);
             bytes[1] = std::byte{0};
         }
         take(static_cast<ulog::Type>(kTypes[random() % kTypes.size()]), bytes);

@@ -17,6 +17,8 @@ namespace {
 
 /// The system's part of what waits for a client [bytes]: small, so that a slow client is found.
 constexpr int kSendBuffer = 16 * 1024;
+/// Connections that the system keeps until they are accepted: a burst is answered, with 503 where it has to be.
+constexpr int kBacklog = 64;
 /// What a client may send behind its request [bytes].
 constexpr std::size_t kMaxDiscarded = 64U * 1024U;
 
@@ -91,7 +93,7 @@ int Server::listen(const hal::NetworkAddress& address)
         ::setsockopt(listener_, IPPROTO_IPV6, IPV6_V6ONLY, &kOn, sizeof kOn);
     }
     if (::bind(listener_, reinterpret_cast<const sockaddr*>(&address.storage), address.length) != 0 ||
-        ::listen(listener_, kMaxClients) != 0) {
+        ::listen(listener_, kBacklog) != 0) {
         return errno;
     }
     local_alone_ = is_loopback(address);

@@ -22,7 +22,7 @@ template <class T>
 std::optional<T> topic_of(std::span<const std::byte> content)
 {
     T topic;
-    if (content.size() < flightlog::kBytesOf<T>) {
+    if (content.size() != flightlog::kBytesOf<T>) {
         return std::nullopt;
     }
     std::memcpy(static_cast<void*>(&topic), content.data(), flightlog::kBytesOf<T>);  // the rest is padding
