@@ -6,21 +6,27 @@
 
 namespace jink::host {
 
-Logging::Logging(const LogOptions& options, const flightlog::Setup& setup) : options_(options)
+Logging::Logging(const LogOptions& options, const flightlog::Setup& setup, flightlog::Output* page) : options_(options)
 {
-    if (options.folder.empty()) {
+    if (!options.folder.empty()) {
+        flightlog::FileOptions files;
+        files.folder = options.folder;
+        files.file_bytes = std::uint64_t{options.file_megabytes} << 20U;
+        files.files = options.files;
+        writer_.emplace(files, flightlog::definitions_of(setup), std::make_unique<flightlog::PosixDisk>(),
+                        setup.logs_cloud ? flightlog::Writer::kQueueBytesWithClouds : flightlog::Writer::kQueueBytes);
+    }
+    if (!writer_ && page == nullptr) {
         return;
     }
-    flightlog::FileOptions files;
-    files.folder = options.folder;
-    files.file_bytes = std::uint64_t{options.file_megabytes} << 20U;
-    files.files = options.files;
-    writer_.emplace(files, flightlog::definitions_of(setup), std::make_unique<flightlog::PosixDisk>(),
-                    setup.logs_cloud ? flightlog::Writer::kQueueBytesWithClouds : flightlog::Writer::kQueueBytes);
+    flightlog::Output* output = writer_ ? &*writer_ : page;
+    if (writer_ && page != nullptr) {
+        output = &both_.emplace(*writer_, *page);
+    }
     flightlog::FlightLog::Limits limits;
     limits.record += (setup.has_bus ? flightlog::FlightLog::Limits::kOfBus : 0U) +
                      (setup.logs_cloud ? flightlog::FlightLog::Limits::kOfClouds : 0U);
-    log_.emplace(*writer_, limits, setup.stored);
+    log_.emplace(*output, limits, setup.stored);
 }
 
 hal::SerialPort& Logging::line(hal::SerialPort& port)
@@ -35,10 +41,17 @@ hal::SerialPort& Logging::cloud(hal::SerialPort& port)
 
 hal::CanPort& Logging::can(hal::CanPort& port) { return log_ ? can_.emplace(port, log_->recorder()) : port; }
 
+void Logging::set_time(TimePoint now) noexcept
+{
+    if (writer_) {
+        writer_->set_time(now.us);
+    }
+}
+
 void Logging::begin(TimePoint began) noexcept
 {
+    set_time(began);
     if (log_) {
-        writer_->set_time(began.us);
         log_->begin(began);
     }
 }
@@ -50,7 +63,7 @@ void Logging::end(const app::StepReport& report, app::Coprocessor& coprocessor, 
         return;
     }
     log_->end(report, coprocessor, began, took_us);
-    if (const int error = writer_->take_news(); error != 0) {
+    if (const int error = writer_ ? writer_->take_news() : 0; error != 0) {
         background.print(Stream::error, "jinkd: " + options_.folder + ": the log is not written: " +
                                             std::strerror(error) + "; trying again every 10 s");
     }
@@ -58,8 +71,8 @@ void Logging::end(const app::StepReport& report, app::Coprocessor& coprocessor, 
 
 void Logging::begin_shut_down(TimePoint now) noexcept
 {
+    set_time(now);
     if (log_) {
-        writer_->set_time(now.us);
         log_->begin_shut_down(now);
     }
 }
@@ -68,6 +81,8 @@ void Logging::end_shut_down(TimePoint now) noexcept
 {
     if (log_) {
         log_->end_shut_down(now);
+    }
+    if (writer_) {
         static_cast<void>(writer_->finish());
     }
 }

@@ -18,15 +18,39 @@ struct LogOptions {
     unsigned files = 32;
 };
 
-/// The flight log of jinkd, if one is wanted: the ports that record, the loop's side and the thread that writes.
+/// Gives each message to the files of the log and to the live page.
+class TwoOutputs final : public flightlog::Output {
+public:
+    TwoOutputs(flightlog::Output& files, flightlog::Output& page) : files_(files), page_(page) {}
+    bool add(std::span<const std::byte> messages, std::uint32_t count) noexcept override
+    {
+        static_cast<void>(page_.add(messages, count));
+        return files_.add(messages, count);
+    }
+    void lose() noexcept override
+    {
+        page_.lose();
+        files_.lose();
+    }
+    [[nodiscard]] flightlog::LogCounts counts() const noexcept override { return files_.counts(); }
+
+private:
+    flightlog::Output& files_;
+    flightlog::Output& page_;
+};
+
+/// The flight log of jinkd, if files or a live page want it: the ports that record, the loop's side and the thread that
+/// writes files.
 class Logging {
 public:
-    Logging(const LogOptions& options, const flightlog::Setup& setup);
+    /// @param page  nullptr: none; outlives this
+    Logging(const LogOptions& options, const flightlog::Setup& setup, flightlog::Output* page);
     Logging(const Logging&) = delete;
     Logging& operator=(const Logging&) = delete;
 
-    /// nullptr: no log.
+    /// nullptr: neither files nor a page.
     [[nodiscard]] flightlog::HalRecorder* recorder() noexcept { return log_ ? &log_->recorder() : nullptr; }
+    /// Of the files; nullptr: none.
     [[nodiscard]] const flightlog::Output* output() const noexcept { return writer_ ? &*writer_ : nullptr; }
     /// The ports that the co-processor is given: the given ones, recorded if there is a log. They outlive this.
     [[nodiscard]] hal::SerialPort& line(hal::SerialPort& port);
@@ -42,8 +66,11 @@ public:
     void end_shut_down(TimePoint now) noexcept;
 
 private:
+    void set_time(TimePoint now) noexcept;
+
     LogOptions options_;
     std::optional<flightlog::Writer> writer_;
+    std::optional<TwoOutputs> both_;
     std::optional<flightlog::FlightLog> log_;
     std::optional<flightlog::RecordingSerialPort> line_;
     std::optional<flightlog::RecordingSerialPort> cloud_;

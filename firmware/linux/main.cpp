@@ -23,6 +23,7 @@
 #include "firmware/linux/background.hpp"
 #include "firmware/linux/flight_log/assembly.hpp"
 #include "firmware/linux/housekeeping.hpp"
+#include "firmware/linux/live_page/live_page.hpp"
 #include "firmware/linux/loading.hpp"
 #include "firmware/linux/logging.hpp"
 #include "firmware/linux/node_identity.hpp"
@@ -268,6 +269,13 @@ int run(const Options& options, const app::Parameters& initial, const files::Par
         const geometry::MeshMap* map)
 {
     hal::SystemClock clock;
+    std::unique_ptr<livepage::LivePage> page;
+    if (!options.page.address.empty()) {
+        page = livepage::LivePage::open(options.page, stored[static_cast<std::size_t>(app::Param::half_xy)]);
+        if (!page) {
+            return kRefused;
+        }
+    }
     Devices devices;
     link::mavlink::Signing signing;
     files::SigningState signing_state;
@@ -275,7 +283,7 @@ int run(const Options& options, const app::Parameters& initial, const files::Par
         return kRefused;
     }
     const flightlog::Setup setup = set_up(options, initial, stored, map, signing);
-    host::Logging flight_log(options.log, setup);
+    host::Logging flight_log(options.log, setup, page.get());
     const flightlog::AssemblyPorts ports{setup.on_bus ? nullptr : &flight_log.line(*devices.line),
                                          setup.has_bus ? &flight_log.can(devices.frames) : nullptr,
                                          devices.cloud ? &flight_log.cloud(*devices.cloud) : nullptr};
@@ -350,6 +358,10 @@ int main(int argc, char** argv)
     }
     if ((has_serial && options.serial.empty()) || (has_link && options.link.empty())) {
         complain_now("--serial, --link: the name of a line is needed");
+        return kRefused;
+    }
+    if (cli.count("--page") > 0 && options.page.address.empty()) {
+        complain_now("--page: [ADDRESS:]PORT is needed");
         return kRefused;
     }
     files::Complaints complaints;

@@ -58,6 +58,11 @@ void add_options(CLI::App& cli, Options& options)
     cli.add_option("--log-count", options.log.files, "files of logs that are kept; the oldest are removed")
         ->check(CLI::Range(2, 100'000))
         ->needs(log);
+    CLI::Option* const page =
+        cli.add_option("--page", options.page.address,
+                       "live view in a browser, read only: [ADDRESS:]PORT; without ADDRESS this machine alone");
+    cli.add_option("--page-file", options.page.file, "the page of --page, in place of the installed live.html")
+        ->needs(page);
     cli.add_option("--watchdog", options.watchdog, "watchdog device to feed, e.g. /dev/watchdog0");
     cli.add_option("--clock", options.clock,
                    "the processor's clock [MHz]: a step does the work that fits there, and plans go on over several "

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "firmware/linux/housekeeping.hpp"
+#include "firmware/linux/live_page/live_page.hpp"
 #include "firmware/linux/logging.hpp"
 
 namespace CLI {
@@ -25,6 +26,7 @@ struct Options {
     std::string map_file;
     SigningFiles signing;
     LogOptions log;
+    livepage::PageOptions page;
     std::string watchdog;
     std::string summary;
     double status_period = 1.0;

@@ -65,6 +65,31 @@ const Scheme* scheme_of(std::string_view text)
     return found != kSchemes.end() ? &*found : nullptr;
 }
 
+/// Splits [ADDRESS:]PORT into `link`, whose kind is set. False, and the reason in `fault`, where it is none.
+bool split_address(std::string_view text, LinkName& link, std::string& fault)
+{
+    const std::size_t colon = text.rfind(':');
+    const std::string_view number = colon == std::string_view::npos ? text : text.substr(colon + 1);
+    std::string_view address = colon == std::string_view::npos ? "" : text.substr(0, colon);
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), link.port);
+    if (error != std::errc() || end != number.data() + number.size() || link.port == 0) {
+        fault = "the port has to be a number from 1 to 65535";
+        return false;
+    }
+    if (address.starts_with('[') && address.ends_with(']')) {
+        address = address.substr(1, address.size() - 2);
+    } else if (address.find(':') != std::string_view::npos) {
+        fault = "an IPv6 address has to stand in brackets";
+        return false;
+    }
+    if (address.empty() && (colon != std::string_view::npos || link.kind != hal::NetworkKind::udp_listen)) {
+        fault = "an address is missing";
+        return false;
+    }
+    link.where = address.empty() || address == "localhost" ? "127.0.0.1" : std::string(address);
+    return true;
+}
+
 /// False where the text is no address of numbers.
 bool to_address(const LinkName& link, hal::NetworkAddress& out)
 {
@@ -133,29 +158,27 @@ std::optional<LinkName> split_link(std::string_view text, std::string& fault)
     }
     text.remove_prefix(scheme->name.size());
     LinkName link{scheme->serial, scheme->kind, std::string(text), 0};
-    if (link.serial) {
-        return link;
-    }
-    const std::size_t colon = text.rfind(':');
-    const std::string_view number = colon == std::string_view::npos ? text : text.substr(colon + 1);
-    std::string_view address = colon == std::string_view::npos ? "" : text.substr(0, colon);
-    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), link.port);
-    if (error != std::errc() || end != number.data() + number.size() || link.port == 0) {
-        fault = "the port has to be a number from 1 to 65535; " + std::string(kForms);
+    if (!link.serial && !split_address(text, link, fault)) {
+        fault += "; " + std::string(kForms);
         return std::nullopt;
     }
-    if (address.starts_with('[') && address.ends_with(']')) {
-        address = address.substr(1, address.size() - 2);
-    } else if (address.find(':') != std::string_view::npos) {
-        fault = "an IPv6 address has to stand in brackets; " + std::string(kForms);
-        return std::nullopt;
-    }
-    if (address.empty() && (colon != std::string_view::npos || link.kind != hal::NetworkKind::udp_listen)) {
-        fault = "an address is missing; " + std::string(kForms);
-        return std::nullopt;
-    }
-    link.where = address.empty() || address == "localhost" ? "127.0.0.1" : std::string(address);
     return link;
+}
+
+std::optional<hal::NetworkAddress> listening_address(std::string_view text, std::string& fault)
+{
+    constexpr const char* kForm = "; expected [ADDRESS:]PORT";
+    LinkName link{false, hal::NetworkKind::udp_listen, {}, 0};
+    hal::NetworkAddress address;
+    if (!split_address(text, link, fault)) {
+        fault += kForm;
+        return std::nullopt;
+    }
+    if (!to_address(link, address)) {
+        fault = link.where + " is no address of numbers, as 127.0.0.1 or [::1]" + kForm;
+        return std::nullopt;
+    }
+    return address;
 }
 
 bool AutopilotLine::open_device(const std::string& text)

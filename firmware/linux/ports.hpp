@@ -30,6 +30,10 @@ struct LinkName {
 /// Whether a text is a link's and no device's: it begins with a scheme of split_link.
 [[nodiscard]] bool is_link(std::string_view text);
 
+/// The address that [ADDRESS:]PORT names, with addresses as in LinkName; empty, and the reason in `fault`, where it
+/// names none.
+[[nodiscard]] std::optional<hal::NetworkAddress> listening_address(std::string_view text, std::string& fault);
+
 /// The line to the autopilot: a serial device, or a network.
 class AutopilotLine {
 public:
