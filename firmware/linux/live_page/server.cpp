@@ -20,7 +20,7 @@ constexpr int kSendBuffer = 16 * 1024;
 /// Connections that the system keeps until they are accepted: a burst is answered, with 503 where it has to be.
 constexpr int kBacklog = 64;
 /// What a client may send behind its request [bytes].
-constexpr std::size_t kMaxDiscarded = 64U * 1024U;
+constexpr std::size_t kMaxDiscarded = std::size_t{64} * 1024;
 
 /// The page is one file with its program and style in it, as the viewer of jink report.
 constexpr std::string_view kFields =
@@ -92,8 +92,9 @@ int Server::listen(const hal::NetworkAddress& address)
     if (address.storage.ss_family == AF_INET6) {
         ::setsockopt(listener_, IPPROTO_IPV6, IPV6_V6ONLY, &kOn, sizeof kOn);
     }
-    if (::bind(listener_, reinterpret_cast<const sockaddr*>(&address.storage), address.length) != 0 ||
-        ::listen(listener_, kBacklog) != 0) {
+    // The interface of the system's sockets. NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast)
+    const auto* const own = reinterpret_cast<const sockaddr*>(&address.storage);
+    if (::bind(listener_, own, address.length) != 0 || ::listen(listener_, kBacklog) != 0) {
         return errno;
     }
     local_alone_ = is_loopback(address);
