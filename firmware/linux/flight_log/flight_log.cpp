@@ -21,7 +21,7 @@ public:
         size_ = std::min(size_ + static_cast<std::size_t>(std::max(n, 0)), text_.size() - 1);
         return *this;
     }
-    Line& add_name(std::string_view name) noexcept { return add("%.*s", static_cast<int>(name.size()), name.data()); }
+    Line& add_text(std::string_view name) noexcept { return add("%.*s", static_cast<int>(name.size()), name.data()); }
     [[nodiscard]] std::string_view view() const noexcept { return {text_.data(), size_}; }
 
 private:
@@ -33,11 +33,11 @@ private:
 void add_reason(const app::StepReport& report, std::uint32_t id, Line& line)
 {
     if (const auto& conflict = report.guidance.conflict) {
-        line.add("conflict with ").add_name(name_of(conflict->threat.kind));
+        line.add_text("conflict with ").add_text(name_of(conflict->threat.kind));
         line.add(" %u in %.1f s", id != 0 ? id : static_cast<unsigned>(conflict->threat.index),
                  static_cast<double>(conflict->time_to_loss));
     } else {
-        line.add("no conflict");
+        line.add_text("no conflict");
     }
     line.add(", faults 0x%x", report.faults);
 }
@@ -172,21 +172,25 @@ void FlightLog::put_changes(const app::StepReport& report, std::uint32_t id, Tim
     if (report.state != last_.state || report.faults != last_.faults) {
         const bool is_bad = report.state >= link::SystemState::critical;
         Line line;
-        line.add("state ").add_name(name_of(report.state)).add(": ");
+        line.add_text("state ").add_text(name_of(report.state)).add_text(": ");
         add_reason(report, id, line);
         put_text(is_bad ? ulog::Level::critical : ulog::Level::info, now, line.view());
     }
     if (report.control != last_.control) {
         Line line;
-        line.add("control ").add_name(name_of(last_.control)).add(" -> ").add_name(name_of(report.control)).add(": ");
+        line.add_text("control ")
+            .add_text(name_of(last_.control))
+            .add_text(" -> ")
+            .add_text(name_of(report.control))
+            .add_text(": ");
         add_reason(report, id, line);
         put_text(ulog::Level::notice, now, line.view());
     }
     const avoid::Guidance& g = report.guidance;
     if (g.new_manoeuvre || g.state != last_.guidance) {
         Line line;
-        line.add("guidance ").add_name(name_of(last_.guidance)).add(" -> ").add_name(name_of(g.state));
-        line.add(g.new_manoeuvre ? ", new manoeuvre " : ", ").add_name(name_of(g.kind));
+        line.add_text("guidance ").add_text(name_of(last_.guidance)).add_text(" -> ").add_text(name_of(g.state));
+        line.add(g.new_manoeuvre ? ", new manoeuvre " : ", ").add_text(name_of(g.kind));
         line.add(" by method %u, margin %.2f m, cost %.3f: ", g.by, static_cast<double>(g.margin),
                  static_cast<double>(g.cost));
         add_reason(report, id, line);
