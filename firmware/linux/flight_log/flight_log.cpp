@@ -21,7 +21,7 @@ public:
         size_ = std::min(size_ + static_cast<std::size_t>(std::max(n, 0)), text_.size() - 1);
         return *this;
     }
-    Line& add_text(std::string_view name) noexcept { return add("%.*s", static_cast<int>(name.size()), name.data()); }
+    Line& add_text(std::string_view text) noexcept { return add("%.*s", static_cast<int>(text.size()), text.data()); }
     [[nodiscard]] std::string_view view() const noexcept { return {text_.data(), size_}; }
 
 private:
@@ -190,7 +190,7 @@ void FlightLog::put_changes(const app::StepReport& report, std::uint32_t id, Tim
     if (g.new_manoeuvre || g.state != last_.guidance) {
         Line line;
         line.add_text("guidance ").add_text(name_of(last_.guidance)).add_text(" -> ").add_text(name_of(g.state));
-        line.add(g.new_manoeuvre ? ", new manoeuvre " : ", ").add_text(name_of(g.kind));
+        line.add_text(g.new_manoeuvre ? ", new manoeuvre " : ", ").add_text(name_of(g.kind));
         line.add(" by method %u, margin %.2f m, cost %.3f: ", g.by, static_cast<double>(g.margin),
                  static_cast<double>(g.cost));
         add_reason(report, id, line);
