@@ -10,8 +10,9 @@ namespace jink::avoid {
 
 /// The command that is flown in place of `wanted`, so that the own vehicle and all cooperative tracks can still stop
 /// without contact: `wanted` where it leaves that, else so much of it, in eighths, as does; where none does, a stop.
-/// A part of `wanted` is never faster than `fastest` [m/s]: the age of reports rises and falls, and what is clear with
-/// it; a command that has been held back comes up again no faster than the vehicle can.
+/// A part of `wanted` is never faster than `fastest` [m/s], which does not limit `wanted` flown whole: the age of
+/// reports rises and falls, and what is clear with it; a command that has been held back comes up again no faster than
+/// the vehicle can.
 ///
 /// The own vehicle flies a command for FlightRules::latency and stops then. A track flies on for the latency and stops
 /// then. Since its report, and until it stops, it may have changed its velocity by what the own vehicle could in that

@@ -44,7 +44,7 @@ float slant(float limit, const vehicle::VehicleLimits& limits) noexcept
 class MaxClearance {
 public:
     MaxClearance(const world::Situation& s, const Settings& settings, Seconds horizon, WorkBudget& budget) noexcept
-        : s_(s), settings_(settings), budget_(budget), horizon_(horizon),
+        : s_(s), budget_(budget), horizon_(horizon),
           step_(std::max(settings.prediction_step, horizon / static_cast<float>(kMaxPathPoints - 2)))
     {
         // As many chords as steps of this length: the first two are short.
@@ -110,7 +110,6 @@ public:
 
 private:
     const world::Situation& s_;
-    const Settings& settings_;
     WorkBudget& budget_;
     Seconds horizon_;
     Seconds step_;

@@ -33,7 +33,7 @@ enum class CandidateStatus : std::uint8_t {
     hits_moving,    ///< touches a moving threat, likewise
     hits_airspace,  ///< leaves floor, ceiling or keep-in, or enters a cylinder
     not_flyable,    ///< asks for more acceleration than the vehicle has, or comes back to the leg too steeply
-    not_evaluated,  ///< the work budget ran out before its turn
+    not_evaluated,  ///< the work budget ran out before its turn, or it can be no cheaper than the chosen one
 };
 
 /// Right-handed frame of the manoeuvre: x along the leg, y horizontal, z = x cross y; columns of `axes`.
