@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The antipodal sphere of the public ORCA-3D library's example, flown with core/orca: time of a vehicle's step, and the
-// least distance of two centres in continuous time (3.00 m required). For comparison the library's time and distance in
-// the same runs on the machine of docs/evidence/performance.md; the library allocates heap memory in every step.
+// The antipodal sphere of the public ORCA-3D library's example, flown with core/orca: time of a vehicle's step, the
+// least distance of two centres in continuous time (3.00 m required), and when the vehicles arrive. Beside it, in the
+// same run, the published algorithm written anew (orca_published.hpp), and on the sphere of 100 m the library's own
+// time and distance as published with its example; the library allocates heap memory in every step.
 //
 // Each run is flown three times with identical results. The shortest time of the three counts, for the run and for each
 // vehicle's step, to exclude other load. Processor time, neighbour search included.
@@ -13,6 +14,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "tests/timing/orca_published.hpp"
 #include "tests/timing/orca_swarm.hpp"
 
 namespace {
@@ -39,11 +41,12 @@ double processor_time()
 }
 
 /// Mean time of a vehicle's step [s]; all arrive, or kMaxSteps.
+template <class Flown>
 double mean_time(std::size_t count, const SwarmSettings& settings, long& steps)
 {
     double best = 1e9;
     for (int run = 0; run < kRuns; ++run) {
-        Swarm swarm(count, settings);
+        Flown swarm(count, settings);
         steps = 0;
         const double start = processor_time();
         while (!swarm.arrived() && steps < kMaxSteps) {
@@ -79,31 +82,55 @@ double worst_time(std::size_t count, const SwarmSettings& settings, long steps)
     return static_cast<double>(*std::max_element(times.begin(), times.end())) - clock;
 }
 
+/// Flies again and counts the least distance, when the last one arrives, and when the vehicles do in the mean.
+template <class Flown>
+void watch(benchmark::State& state, Flown& swarm, long steps, float step)
+{
+    float least = 1e9F;
+    std::size_t under_way = 0;
+    for (long k = 0; k < steps; ++k) {
+        swarm.step();
+        least = std::min(least, swarm.least_distance());
+        under_way += swarm.under_way();
+    }
+    const auto seconds = static_cast<double>(step);
+    state.counters["least_m"] = static_cast<double>(least);
+    state.counters["flown_s"] = static_cast<double>(steps) * seconds;
+    state.counters["arrival_s"] = (1.0 + static_cast<double>(under_way) / static_cast<double>(swarm.size())) * seconds;
+}
+
+void fly_published(benchmark::State& state, std::size_t count, const SwarmSettings& settings)
+{
+    for (auto _ : state) {
+        long steps = 0;
+        state.SetIterationTime(mean_time<PublishedSwarm>(count, settings, steps));
+        PublishedSwarm swarm(count, settings);
+        watch(state, swarm, steps, settings.step);
+        state.SetLabel(steps < kMaxSteps ? "published algorithm" : "NOT ARRIVED");
+    }
+}
+
 void fly(benchmark::State& state, std::size_t count, const SwarmSettings& settings, const Rival& rival)
 {
     for (auto _ : state) {
         long steps = 0;
-        const double mean = mean_time(count, settings, steps);
+        const double mean = mean_time<Swarm>(count, settings, steps);
         state.SetIterationTime(mean);
         Swarm swarm(count, settings);
-        float least = 1e9F;
-        for (long k = 0; k < steps; ++k) {
-            swarm.step();
-            least = std::min(least, swarm.least_distance());
-        }
+        watch(state, swarm, steps, settings.step);
         const Swarm::Counts& counts = swarm.counts();
         const auto share = [&](std::uint64_t part) {
             return static_cast<double>(part) / static_cast<double>(counts.solved);
         };
         state.counters["worst_us"] = 1e6 * worst_time(count, settings, steps);
-        state.counters["least_m"] = static_cast<double>(least);
-        state.counters["flown_s"] = static_cast<double>(steps) * static_cast<double>(settings.step);
         state.counters["warning"] = share(counts.warning);
         state.counters["conflict"] = share(counts.conflict);
         state.counters["capped"] = share(counts.truncated);
         char text[96];
         if (rival.least > 0.0) {
             std::snprintf(text, sizeof text, "public library: %.2f us, %.2f m", rival.mean, rival.least);
+        } else if (rival.mean == 0.0) {
+            std::snprintf(text, sizeof text, "no figure of the library");
         } else {
             std::snprintf(text, sizeof text, "public library: %.0f us", rival.mean);
         }
@@ -111,13 +138,18 @@ void fly(benchmark::State& state, std::size_t count, const SwarmSettings& settin
     }
 }
 
-void report(const char* name, std::size_t count, const SwarmSettings& settings, const Rival& rival)
+template <class Run>
+void report(const char* name, std::size_t count, Run run)
 {
-    benchmark::RegisterBenchmark((std::string(name) + "/" + std::to_string(count)).c_str(),
-                                 [=](benchmark::State& state) { fly(state, count, settings, rival); })
+    benchmark::RegisterBenchmark((std::string(name) + "/" + std::to_string(count)).c_str(), run)
         ->UseManualTime()
         ->Iterations(1)
         ->Unit(benchmark::kMicrosecond);
+}
+
+void report(const char* name, std::size_t count, const SwarmSettings& settings, const Rival& rival)
+{
+    report(name, count, [=](benchmark::State& state) { fly(state, count, settings, rival); });
 }
 
 }  // namespace
@@ -133,6 +165,13 @@ int main(int argc, char** argv)
     dense.most = NearestPoints::kMax - 1;
     for (const Rival& rival : kSphere) {
         report("sphere", rival.count, sphere, rival);
+        report("published", rival.count, [=](auto& state) { fly_published(state, rival.count, sphere); });
+    }
+    SwarmSettings small = sphere;
+    small.sphere = 60.0F;
+    for (const std::size_t count : {37U, 200U, 1000U}) {
+        report("sphere_60", count, small, {});
+        report("published_60", count, [=](auto& state) { fly_published(state, count, small); });
     }
     report("dense", kDense.count, dense, kDense);
     // As in the public library: shows the effect of the two regions.

@@ -37,14 +37,66 @@ std::vector<Vec3> opposite(std::vector<Vec3> points)
 
 }  // namespace
 
+MovingPoints::MovingPoints(std::size_t count, float radius)
+    : MovingPoints(on_sphere(count, radius), opposite(on_sphere(count, radius)))
+{
+}
+
+MovingPoints::MovingPoints(std::vector<Vec3> positions, std::vector<Vec3> goals)
+    : positions_(std::move(positions)), velocities_(positions_.size(), Vec3::Zero()), goals_(std::move(goals))
+{
+}
+
+Vec3 MovingPoints::preferred(std::size_t self, float cruise) const
+{
+    const Vec3 way = goals_[self] - positions_[self];
+    const float length = way.norm();
+    const Vec3 wanted = length > cruise ? Vec3(way * (cruise / length)) : way;
+    Random random(self * 1000003U + steps_);
+    return wanted + 1e-3F * Vec3(random.uniform(-1.0F, 1.0F), random.uniform(-1.0F, 1.0F), random.uniform(-1.0F, 1.0F));
+}
+
+void MovingPoints::move(const std::vector<Vec3>& velocities, float step)
+{
+    for (std::size_t i = 0; i < positions_.size(); ++i) {
+        velocities_[i] = velocities[i];
+        positions_[i] += velocities[i] * step;
+    }
+    ++steps_;
+}
+
+std::size_t MovingPoints::under_way(float distance) const
+{
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < positions_.size(); ++i) {
+        count += (goals_[i] - positions_[i]).squaredNorm() > distance * distance ? 1U : 0U;
+    }
+    return count;
+}
+
+float MovingPoints::least_distance(float step) const
+{
+    float least2 = std::numeric_limits<float>::max();
+    for (std::size_t i = 0; i < positions_.size(); ++i) {
+        for (std::size_t j = i + 1; j < positions_.size(); ++j) {
+            const Vec3 now = positions_[j] - positions_[i];
+            const Vec3 velocity = velocities_[j] - velocities_[i];
+            const float speed2 = velocity.squaredNorm();
+            const float ago = speed2 > 0.0F ? std::clamp(now.dot(velocity) / speed2, 0.0F, step) : 0.0F;
+            least2 = std::min(least2, (now - ago * velocity).squaredNorm());
+        }
+    }
+    return std::sqrt(least2);
+}
+
 Swarm::Swarm(std::size_t count, const SwarmSettings& settings)
     : Swarm(on_sphere(count, settings.sphere), opposite(on_sphere(count, settings.sphere)), settings)
 {
 }
 
 Swarm::Swarm(std::vector<Vec3> positions, std::vector<Vec3> goals, const SwarmSettings& settings)
-    : settings_(settings), positions_(std::move(positions)), velocities_(positions_.size(), Vec3::Zero()),
-      goals_(std::move(goals)), next_(positions_.size()), nearest_(positions_.size(), settings.most, settings.range)
+    : MovingPoints(std::move(positions), std::move(goals)), settings_(settings), next_(size()),
+      nearest_(size(), settings.most, settings.range)
 {
     settings_.pair.conflict_ratio = settings_.regions ? 2.0F * settings_.radius / settings_.warning : 0.999F;
 }
@@ -78,15 +130,6 @@ std::size_t Swarm::add_obstacles(std::size_t self, float& cap)
     counts_.beside_obstacles += found.planes.size();
     std::copy(found.planes.begin(), found.planes.end(), planes_.begin());
     return found.planes.size();
-}
-
-Vec3 Swarm::preferred(std::size_t self) const
-{
-    const Vec3 way = goals_[self] - positions_[self];
-    const float length = way.norm();
-    const Vec3 wanted = length > settings_.cruise ? Vec3(way * (settings_.cruise / length)) : way;
-    Random random(self * 1000003U + steps_);
-    return wanted + 1e-3F * Vec3(random.uniform(-1.0F, 1.0F), random.uniform(-1.0F, 1.0F), random.uniform(-1.0F, 1.0F));
 }
 
 void Swarm::build()
@@ -137,24 +180,17 @@ void Swarm::decide(std::size_t self)
     }
     const Sphere sphere{Vec3::Zero(), cap};
     WorkBudget budget(1'000'000);
-    const Solution solution =
-        solve({{planes_.data(), first + conflicts + warnings}, {&sphere, 1}, preferred(self), velocities_[self]},
-              scratch_.view(), budget);
+    const Solution solution = solve({{planes_.data(), first + conflicts + warnings},
+                                     {&sphere, 1},
+                                     preferred(self, settings_.cruise),
+                                     velocities_[self]},
+                                    scratch_.view(), budget);
     ++counts_.solved;
     counts_.planes += first + conflicts + warnings;
     counts_.warning += (solution.status & kRelaxedWarning) != 0 ? 1U : 0U;
     counts_.conflict += (solution.status & kRelaxedConflict) != 0 ? 1U : 0U;
     counts_.other += (solution.status & ~(kRelaxedWarning | kRelaxedConflict)) != 0 ? 1U : 0U;
     next_[self] = solution.velocity;
-}
-
-void Swarm::move()
-{
-    for (std::size_t i = 0; i < positions_.size(); ++i) {
-        velocities_[i] = next_[i];
-        positions_[i] += velocities_[i] * settings_.step;
-    }
-    ++steps_;
 }
 
 void Swarm::step()
@@ -164,32 +200,6 @@ void Swarm::step()
         decide(i);
     }
     move();
-}
-
-bool Swarm::arrived() const
-{
-    const float near2 = 4.0F * settings_.radius * settings_.radius;
-    for (std::size_t i = 0; i < positions_.size(); ++i) {
-        if ((goals_[i] - positions_[i]).squaredNorm() > near2) {
-            return false;
-        }
-    }
-    return true;
-}
-
-float Swarm::least_distance() const
-{
-    float least2 = std::numeric_limits<float>::max();
-    for (std::size_t i = 0; i < positions_.size(); ++i) {
-        for (std::size_t j = i + 1; j < positions_.size(); ++j) {
-            const Vec3 now = positions_[j] - positions_[i];
-            const Vec3 velocity = velocities_[j] - velocities_[i];
-            const float speed2 = velocity.squaredNorm();
-            const float ago = speed2 > 0.0F ? std::clamp(now.dot(velocity) / speed2, 0.0F, settings_.step) : 0.0F;
-            least2 = std::min(least2, (now - ago * velocity).squaredNorm());
-        }
-    }
-    return std::sqrt(least2);
 }
 
 }  // namespace jink::orca

@@ -23,8 +23,8 @@ namespace jink::orca {
 /// The public library loses distance in two ways: contradicting half-spaces all yield, and of more than `most`
 /// neighbours the farther ones are ignored. Here only the half-spaces of a slightly wider region yield, which keeps the
 /// distance itself: the conflict region's half-spaces depend on positions alone (Conflict::at_rest) and are jointly
-/// feasible, and a speed cap keeps ignored neighbours off. With a brake time of two periods a neighbour a metre away
-/// causes no cap, and half a metre causes no slowing.
+/// feasible, and a speed cap keeps ignored neighbours off. With a brake time of one period, the least that holds, a
+/// neighbour half a metre away causes no cap, and a quarter causes no slowing.
 struct SwarmSettings {
     float radius = 1.5F;     ///< of a vehicle [m]
     float max_speed = 2.0F;  ///< [m/s]
@@ -33,7 +33,7 @@ struct SwarmSettings {
     std::size_t most = 10;   ///< largest number of considered neighbours
     float step = 0.125F;     ///< [s]
     float sphere = 100.0F;   ///< radius [m]
-    float warning = 3.1F;    ///< radius of the warning region [m]; the conflict region's is 2 radius
+    float warning = 3.2F;    ///< radius of the warning region [m]; the conflict region's is 2 radius
     bool regions = true;     ///< false: one yielding region of 2 radius, as in the public library
     PairSettings pair = swarm_pair();
 
@@ -42,8 +42,8 @@ struct SwarmSettings {
         PairSettings pair;
         pair.horizon = 10.0F;
         pair.conflict = Conflict::at_rest;
-        pair.brake = 0.25F;
-        pair.ramp_speed = 0.25F;
+        pair.brake = 0.125F;
+        pair.ramp_speed = 0.75F;
         pair.recovery_time = 0.125F;
         return pair;
     }
@@ -53,7 +53,33 @@ struct SwarmSettings {
 world::MapSelection choose_obstacles(const geometry::MeshMap& map, const OwnMotion& own,
                                      const ObstacleSettings& settings, WorkBudget& budget, world::ObstacleTable& table);
 
-class Swarm {
+/// Points on their way to goals.
+class MovingPoints {
+public:
+    /// On a sphere of `radius` [m], each to the opposite point.
+    MovingPoints(std::size_t count, float radius);
+    /// From given positions to given goals, equal in number.
+    MovingPoints(std::vector<Vec3> positions, std::vector<Vec3> goals);
+
+    /// How many are more than `distance` [m] away from their goals.
+    [[nodiscard]] std::size_t under_way(float distance) const;
+    /// Least distance of two points [m] during the last period of `step` [s], in continuous time.
+    [[nodiscard]] float least_distance(float step) const;
+    [[nodiscard]] std::size_t size() const { return positions_.size(); }
+
+protected:
+    /// To the goal at `cruise` [m/s], slower in its last second, and a thousandth beside it against symmetry.
+    [[nodiscard]] Vec3 preferred(std::size_t self, float cruise) const;
+    /// All fly on at these velocities for `step` [s].
+    void move(const std::vector<Vec3>& velocities, float step);
+
+    std::vector<Vec3> positions_, velocities_, goals_;
+
+private:
+    std::uint64_t steps_ = 0;
+};
+
+class Swarm : public MovingPoints {
 public:
     /// On a sphere, each to the opposite point.
     Swarm(std::size_t count, const SwarmSettings& settings);
@@ -68,13 +94,12 @@ public:
     /// One vehicle's part of it; `build` first, `move` after all.
     void build();
     void decide(std::size_t self);
-    void move();
+    void move() { MovingPoints::move(next_, settings_.step); }
 
     /// All within two radii of their goals.
-    [[nodiscard]] bool arrived() const;
-    /// Least distance of two centres [m] during the last period, in continuous time.
-    [[nodiscard]] float least_distance() const;
-    [[nodiscard]] std::size_t size() const { return positions_.size(); }
+    [[nodiscard]] bool arrived() const { return under_way() == 0; }
+    [[nodiscard]] std::size_t under_way() const { return MovingPoints::under_way(2.0F * settings_.radius); }
+    [[nodiscard]] float least_distance() const { return MovingPoints::least_distance(settings_.step); }
 
     /// Counts so far.
     struct Counts {
@@ -85,11 +110,10 @@ public:
     [[nodiscard]] const Counts& counts() const { return counts_; }
 
 private:
-    [[nodiscard]] Vec3 preferred(std::size_t self) const;
     std::size_t add_obstacles(std::size_t self, float& cap);
 
     SwarmSettings settings_;
-    std::vector<Vec3> positions_, velocities_, goals_, next_;
+    std::vector<Vec3> next_;
     NearestPoints nearest_;
     static constexpr std::size_t kMaxPlanes = 2 * NearestPoints::kMax + kMaxObstaclePlanes;
     Scratch<kMaxPlanes> scratch_;
@@ -99,7 +123,6 @@ private:
     ObstacleSettings obstacle_settings_;
     bool is_among_obstacles_ = false;
     std::array<NearestPoints::Found, NearestPoints::kMax> found_;
-    std::uint64_t steps_ = 0;
     Counts counts_;
 };
 
