@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The flash driver of the STM32F4 against a model of the controller, written from the manual (ST RM0090, 3.5 to 3.9),
-// and the flash in memory that replaces it on hosts.
+// The flash driver of the STM32F4 against a model of the controller, written from the manual (ST RM0090, 3.5 to 3.9).
 #include "hal/stm32f4/flash.hpp"
 
 #include <map>
@@ -9,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include "core/base/random.hpp"
-#include "tests/memory_flash.hpp"
 
 namespace jink::hal {
 namespace {
@@ -153,6 +151,11 @@ struct Announced {
     void operator()(bool erasing) const { m->erasing.push_back(erasing); }
 };
 
+bool program(FlashRegion& flash, std::uint32_t sector, std::uint32_t offset, std::uint32_t word)
+{
+    return flash.program(sector, offset, {&word, 1});
+}
+
 class FlashDriver : public testing::Test {
 protected:
     ControllerModel model;
@@ -180,7 +183,7 @@ TEST_F(FlashDriver, WordsAreProgrammedWhereTheyBelongAndTheControllerIsLockedAga
             continue;
         }
         EXPECT_EQ(flash.read(sector, offset), kErased);
-        EXPECT_TRUE(flash.program(sector, offset, word));
+        EXPECT_TRUE(program(flash, sector, offset, word));
         EXPECT_EQ(flash.read(sector, offset), word) << "not what the cache held";
         EXPECT_TRUE(is_locked());
     }
@@ -194,8 +197,8 @@ TEST_F(FlashDriver, WordsAreProgrammedWhereTheyBelongAndTheControllerIsLockedAga
 TEST_F(FlashDriver, TheSectorThatIsNamedIsErasedAndNoOther)
 {
     for (const std::uint32_t sector : {0U, 1U, 0U}) {
-        ASSERT_TRUE(flash.program(0, 8, 1));
-        ASSERT_TRUE(flash.program(1, kSector - 4, 2));
+        ASSERT_TRUE(program(flash, 0, 8, 1));
+        ASSERT_TRUE(program(flash, 1, kSector - 4, 2));
         EXPECT_TRUE(flash.erase(sector));
         EXPECT_TRUE(is_locked());
         EXPECT_EQ(flash.read(0, 8), sector == 0 ? kErased : 1U) << "not what the cache held";
@@ -214,21 +217,29 @@ TEST_F(FlashDriver, WhoWatchesIsAskedForPatienceAroundAnEraseAlsoWhereItFails)
     EXPECT_EQ(model.erasing, (std::vector<bool>{true, false, true, false}));
 }
 
+TEST_F(FlashDriver, AUnitIsOneWord)
+{
+    EXPECT_EQ(flash.unit_bytes(), 4U);
+    const std::uint32_t two[2] = {1, 2};
+    EXPECT_FALSE(flash.program(0, 0, two));
+    EXPECT_EQ(model.word_writes, 0);
+}
+
 TEST_F(FlashDriver, AWordThatNeedsASetBitIsAFailure)
 {
-    ASSERT_TRUE(flash.program(0, 0, 0x0F));
-    EXPECT_FALSE(flash.program(0, 0, 0xF0));
+    ASSERT_TRUE(program(flash, 0, 0, 0x0F));
+    EXPECT_FALSE(program(flash, 0, 0, 0xF0));
     EXPECT_EQ(flash.read(0, 0), 0U);
 }
 
 TEST_F(FlashDriver, WriteProtectionIsAFailureAndTheNextOperationStartsWithoutItsError)
 {
     model.is_protected = true;
-    EXPECT_FALSE(flash.program(0, 0, 1));
+    EXPECT_FALSE(program(flash, 0, 0, 1));
     EXPECT_FALSE(flash.erase(0));
     EXPECT_TRUE(is_locked());
     model.is_protected = false;
-    EXPECT_TRUE(flash.program(0, 0, 1));
+    EXPECT_TRUE(program(flash, 0, 0, 1));
     EXPECT_TRUE(flash.erase(0));
 }
 
@@ -236,7 +247,7 @@ TEST_F(FlashDriver, ErrorsThatADebuggerLeftAreClearedFirst)
 {
     for (const unsigned bit : {1U, 4U, 5U, 6U, 7U}) {
         model.status |= 1U << bit;
-        EXPECT_TRUE(flash.program(0, 4 * bit, 1)) << bit;
+        EXPECT_TRUE(program(flash, 0, 4 * bit, 1)) << bit;
     }
 }
 
@@ -255,14 +266,14 @@ TEST_F(FlashDriver, AnErrorOfEachKindIsAFailure)
         };
         stm32f4::Flash<ByController, Erring, Announced> erring{ByController{&model}, Erring{&model, 1U << bit}, kFirst,
                                                                Announced{&model}, 1000};
-        EXPECT_FALSE(erring.program(1, 4 * bit, 1)) << bit;
+        EXPECT_FALSE(program(erring, 1, 4 * bit, 1)) << bit;
     }
 }
 
 TEST_F(FlashDriver, AnEmulatorWithoutAControllerIsLeftAlone)
 {
     model.absent = true;
-    EXPECT_FALSE(flash.program(0, 0, 1));
+    EXPECT_FALSE(program(flash, 0, 0, 1));
     EXPECT_FALSE(flash.erase(0));
     EXPECT_EQ(model.writes, 0);
     EXPECT_EQ(model.word_writes, 0);
@@ -272,8 +283,8 @@ TEST_F(FlashDriver, AnEmulatorWithoutAControllerIsLeftAlone)
 TEST_F(FlashDriver, KeysThatAreRefusedAreNotTriedAgain)
 {
     model.refuses_keys = true;
-    EXPECT_FALSE(flash.program(0, 0, 1));
-    EXPECT_FALSE(flash.program(0, 0, 1));
+    EXPECT_FALSE(program(flash, 0, 0, 1));
+    EXPECT_FALSE(program(flash, 0, 0, 1));
     EXPECT_FALSE(flash.erase(0));
     EXPECT_EQ(model.word_writes, 0);
     EXPECT_TRUE(model.erasing.empty());
@@ -286,10 +297,11 @@ TEST_F(FlashDriver, AControllerThatStaysBusyEndsTheWaitAndIsNotTouchedAgain)
         stm32f4::Flash<ByController, ByWord, Announced> driver{ByController{&stuck}, ByWord{&stuck}, kFirst,
                                                                Announced{&stuck}, 1000};
         stuck.stays_busy = true;
-        EXPECT_FALSE(erases ? driver.erase(0) : driver.program(0, 0, 1));
+        EXPECT_FALSE(erases ? driver.erase(0) : program(driver, 0, 0, 1));
         const int writes = stuck.writes;
         EXPECT_FALSE(driver.erase(0));
-        EXPECT_FALSE(driver.program(0, 0, 1));
+        EXPECT_FALSE(program(driver, 0, 0, 1));
+        EXPECT_EQ(driver.read(0, 0), std::nullopt);
         EXPECT_EQ(stuck.writes, writes);
         EXPECT_FALSE(stuck.bus_stalled);
         EXPECT_EQ(stuck.erasing.size(), erases ? 2U : 0U);
@@ -300,47 +312,11 @@ TEST_F(FlashDriver, ABusyControllerIsNotInterrupted)
 {
     model.begin();
     model.stays_busy = true;
-    EXPECT_FALSE(flash.program(0, 0, 1));
+    EXPECT_FALSE(program(flash, 0, 0, 1));
     EXPECT_EQ(model.writes, 0);
     model.stays_busy = false;
     model.busy_left = 1;
-    EXPECT_TRUE(flash.program(0, 0, 1)) << "and is used once it is free";
-}
-
-TEST(MemoryFlash, TakesBitsFromOneToZeroAndErasesSectorsAsAWhole)
-{
-    MemoryFlash<64> flash;
-    EXPECT_TRUE(flash.program(0, 60, 0xF0F0F0F0));
-    EXPECT_FALSE(flash.program(0, 60, 0xFF00FF00));
-    EXPECT_EQ(flash.read(0, 60), 0xF000F000U);
-    EXPECT_TRUE(flash.program(1, 0, 7));
-    EXPECT_TRUE(flash.erase(0));
-    EXPECT_EQ(flash.read(0, 60), kErased);
-    EXPECT_EQ(flash.read(1, 0), 7U);
-    EXPECT_EQ(flash.steps(), 3U + 16U);
-    EXPECT_EQ(flash.erases(), 1U);
-}
-
-TEST(MemoryFlash, ACutLeavesPartOfAStepAndNothingOfLaterOnes)
-{
-    MemoryFlash<16> flash;
-    flash.cut_at(1, 0x0000FFFF);
-    EXPECT_TRUE(flash.program(0, 0, 0));
-    EXPECT_FALSE(flash.program(0, 4, 0));
-    EXPECT_TRUE(flash.is_cut());
-    EXPECT_FALSE(flash.program(0, 8, 0));
-    EXPECT_FALSE(flash.erase(0));
-    EXPECT_EQ(flash.read(0, 4), 0xFFFF0000U);
-    EXPECT_EQ(flash.read(0, 8), kErased);
-    flash.restore();
-    EXPECT_TRUE(flash.program(0, 8, 1));
-    flash.cut_at(2, 1);
-    EXPECT_FALSE(flash.erase(0));
-    flash.restore();
-    EXPECT_EQ(flash.read(0, 0), kErased);
-    EXPECT_EQ(flash.read(0, 4), kErased);
-    EXPECT_EQ(flash.read(0, 8), 1U) << "bit 0 was set already";
-    EXPECT_EQ(flash.read(0, 12), kErased);
+    EXPECT_TRUE(program(flash, 0, 0, 1)) << "and is used once it is free";
 }
 
 }  // namespace
