@@ -73,7 +73,7 @@ struct Board {
     static constexpr std::uintptr_t kTimer = 0x40000000;     // TIM2
     /// Without its external clock the processor runs at the same clock (clock_tree.hpp).
     static constexpr std::uint32_t kClock = 400'000'000;
-    static constexpr std::string_view kNoBus;
+    static constexpr std::string_view kNoBus{};
 
     static Usart& usart() noexcept
     {
