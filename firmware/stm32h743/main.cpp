@@ -10,6 +10,7 @@
 #include "hal/cortex_m/tolerant_memory.hpp"
 #include "hal/cortex_m/vector_table.hpp"
 #include "hal/stm32/pin_pair.hpp"
+#include "hal/stm32h7/axi_sram.hpp"
 #include "hal/stm32h7/clock_tree.hpp"
 #include "hal/stm32h7/flash.hpp"
 #include "hal/stm32h7/reset_flags.hpp"
@@ -25,7 +26,10 @@ constexpr std::uintptr_t kRcc = 0x58024400;
 constexpr std::uintptr_t kPower = 0x58024800;
 constexpr std::uintptr_t kFlash = 0x52002000;
 constexpr std::uintptr_t kGpioD = 0x58020C00;
-constexpr std::uint32_t kStoreSector = 6;  // of bank 2, and 7: stm32h743.ld leaves all of bank 2 out
+constexpr std::uintptr_t kDebug = 0x5C001000;
+constexpr std::uintptr_t kMatrix = 0x51000000;  // of the AXI buses
+constexpr std::uint32_t kCode = 0x08000000;     // the vectors: stm32h743.ld
+constexpr std::uint32_t kStoreSector = 6;       // of bank 2, and 7: stm32h743.ld leaves all of bank 2 out
 constexpr std::uint32_t kStore = 0x081C0000;
 constexpr std::uint32_t kStoreLog2 = 18;       // both sectors
 constexpr std::uintptr_t kPlans = 0x24000000;  // the AXI SRAM: stm32h743.ld
@@ -46,7 +50,10 @@ alignas(app::PlanMemory) __attribute__((section(".plan"))) std::byte plan_memory
 void start_memory() noexcept
 {
     using namespace hal::cortex_m;
+    constexpr std::uintptr_t kVectors = 0xE000ED08;  // VTOR
     const MappedRegisters system{kSystemControl};
+    at(kVectors) = kCode;  // also where the chip was started by its own loader
+    hal::stm32h7::settle_axi_sram(MappedRegisters{kDebug}, MappedRegisters{kMatrix});
     // 0x60000000 to 0x9FFFFFFF, external memories: nothing is there, and a Cortex-M7 may read normal memory ahead of
     // time.
     static_cast<void>(protect(system, {1, 0, 32, Access::none, 0xE7}));

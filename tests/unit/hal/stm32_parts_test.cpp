@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the STM32F4 and H7 share, against models of their registers: clocks of peripherals, pins, the timer.
+// What the STM32F4 and H7 share, against models of their registers: clocks of peripherals, pins, the timer. And the AXI
+// SRAM of the H7.
 #include <map>
 #include <utility>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "core/base/random.hpp"
 #include "hal/stm32/microsecond_timer.hpp"
 #include "hal/stm32/pin_pair.hpp"
+#include "hal/stm32h7/axi_sram.hpp"
 
 namespace jink::hal {
 namespace {
@@ -90,6 +92,18 @@ TEST(MicrosecondTimer, DividesItsClockToAMegahertzAndTurnsThrough32Bits)
         // The prescaler is loaded by the event, before the timer runs.
         EXPECT_EQ(timer.accesses, (std::vector<std::pair<std::uint32_t, bool>>{
                                       {0x28, true}, {0x2C, true}, {0x14, true}, {0x00, true}}));
+    }
+}
+
+TEST(AxiSram, IsReadOneAccessAtATimeOnRevisionsThatReadWrongDataOtherwise)
+{
+    for (const std::uint32_t revision : {0x1001U, 0x1003U, 0x2001U, 0x2003U}) {  // Z, Y, X, V
+        Plain debug;
+        Plain matrix;
+        debug.values[0] = revision << 16U | 0x6450U;
+        stm32h7::settle_axi_sram(debug.block(), matrix.block());
+        EXPECT_EQ(matrix.values.size(), revision < 0x2000 ? 1U : 0U) << revision;
+        EXPECT_EQ(matrix.values[0x8108], revision < 0x2000 ? 1U : 0U) << revision;
     }
 }
 

@@ -78,27 +78,57 @@ struct CmsdkModel {
     }
 };
 
-/// A USART of the STM32F4: a shift register and one byte behind it, each way.
-struct UsartModel {
+/// The sending half of an STM32's USART: a shift register, and `depth` bytes behind it.
+struct UsartTransmitter {
     std::uint32_t control1 = 0, divider = 0;
-    bool rxne = false, ore = false, line_error = false, read_status = false;
-    std::uint8_t received = 0;
-    std::deque<std::byte> to_shift;  ///< one byte behind the shift register
+    std::deque<std::byte> to_shift;
     std::deque<std::byte> shifting;
     std::vector<std::byte> line;
     bool woken = false;
     bool free_running = false;  ///< a byte is sent at each read of the status
 
+    /// A read of the status.
+    std::uint32_t space(std::size_t depth)
+    {
+        if (free_running) {
+            shift_out();
+        }
+        return to_shift.size() < depth ? 1U << 7U : 0U;
+    }
+    void send(std::uint32_t value, std::size_t depth)
+    {
+        EXPECT_LT(to_shift.size(), depth) << "lost";
+        to_shift.push_back(static_cast<std::byte>(value));
+        feed_shifter();
+    }
+    void feed_shifter()
+    {
+        if (shifting.empty() && !to_shift.empty()) {
+            shifting.push_back(to_shift.front());
+            to_shift.pop_front();
+        }
+    }
+    void shift_out()
+    {
+        if (!shifting.empty()) {
+            line.push_back(shifting.front());
+            shifting.clear();
+        }
+        feed_shifter();
+    }
+};
+
+/// A USART of the STM32F4: a shift register and one byte behind it, each way.
+struct UsartModel : UsartTransmitter {
+    bool rxne = false, ore = false, line_error = false, read_status = false;
+    std::uint8_t received = 0;
+
     std::uint32_t read(std::uint32_t offset)
     {
         switch (offset) {
         case 0x00:
-            if (free_running) {
-                shift_out();
-            }
             read_status = true;
-            return (rxne ? 1U << 5U : 0U) | (ore ? 1U << 3U : 0U) | (line_error ? 2U : 0U) |
-                   (to_shift.empty() ? 1U << 7U : 0U);
+            return (rxne ? 1U << 5U : 0U) | (ore ? 1U << 3U : 0U) | (line_error ? 2U : 0U) | space(1);
         case 0x04: {
             rxne = false;
             if (read_status) {
@@ -113,25 +143,12 @@ struct UsartModel {
     void write(std::uint32_t offset, std::uint32_t value)
     {
         switch (offset) {
-        case 0x04:
-            if (!to_shift.empty()) {
-                to_shift.clear();  // overwritten
-            }
-            to_shift.push_back(static_cast<std::byte>(value));
-            feed_shifter();
-            break;
+        case 0x04: send(value, 1); break;
         case 0x08: divider = value; break;
         case 0x0C: control1 = value; break;
         case 0x10:
         case 0x14: EXPECT_EQ(value, 0U); break;
         default: ADD_FAILURE() << "not written: " << offset;
-        }
-    }
-    void feed_shifter()
-    {
-        if (shifting.empty() && !to_shift.empty()) {
-            shifting.push_back(to_shift.front());
-            to_shift.clear();
         }
     }
     void arrive(std::byte byte, bool damaged = false)
@@ -148,14 +165,6 @@ struct UsartModel {
         line_error = damaged;
         read_status = false;
     }
-    void shift_out()
-    {
-        if (!shifting.empty()) {
-            line.push_back(shifting.front());
-            shifting.clear();
-        }
-        feed_shifter();
-    }
     [[nodiscard]] bool interrupt() const
     {
         return ((control1 & (1U << 5U)) != 0 && (rxne || ore)) || ((control1 & (1U << 7U)) != 0 && to_shift.empty());
@@ -164,28 +173,18 @@ struct UsartModel {
 
 /// A USART of the STM32H7 with its FIFOs on (ST RM0433, 48.5 and 48.8): a shift register and 16 bytes behind it, each
 /// way. An overrun stops the receiver until its flag is cleared. Errors of a line belong to the byte that is read next.
-struct FifoUsartModel {
+struct FifoUsartModel : UsartTransmitter {
     static constexpr std::size_t kDepth = 16;
 
-    std::uint32_t control1 = 0, divider = 0;
     std::deque<std::pair<std::byte, bool>> received;  ///< and whether it is damaged
     bool overrun = false;
-    std::deque<std::byte> to_shift;
-    std::deque<std::byte> shifting;
-    std::vector<std::byte> line;
-    bool woken = false;
-    bool free_running = false;  ///< a byte is sent at each read of the status
 
     std::uint32_t read(std::uint32_t offset)
     {
         switch (offset) {
         case 0x1C:
-            if (free_running) {
-                shift_out();
-            }
             return (received.empty() ? 0U : 1U << 5U) | (overrun ? 1U << 3U : 0U) |
-                   (!received.empty() && received.front().second ? 2U : 0U) |
-                   (to_shift.size() < kDepth ? 1U << 7U : 0U);
+                   (!received.empty() && received.front().second ? 2U : 0U) | space(kDepth);
         case 0x24: {
             if (received.empty()) {
                 ADD_FAILURE() << "nothing is there";
@@ -218,19 +217,8 @@ struct FifoUsartModel {
                 received.front().second = false;
             }
             break;
-        case 0x28:
-            EXPECT_LT(to_shift.size(), kDepth) << "lost";
-            to_shift.push_back(static_cast<std::byte>(value));
-            feed_shifter();
-            break;
+        case 0x28: send(value, kDepth); break;
         default: ADD_FAILURE() << "not written: " << offset;
-        }
-    }
-    void feed_shifter()
-    {
-        if (shifting.empty() && !to_shift.empty()) {
-            shifting.push_back(to_shift.front());
-            to_shift.pop_front();
         }
     }
     void arrive(std::byte byte, bool damaged = false)
@@ -244,14 +232,6 @@ struct FifoUsartModel {
             return;
         }
         received.emplace_back(byte, damaged);
-    }
-    void shift_out()
-    {
-        if (!shifting.empty()) {
-            line.push_back(shifting.front());
-            shifting.clear();
-        }
-        feed_shifter();
     }
     [[nodiscard]] bool interrupt() const
     {
