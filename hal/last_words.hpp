@@ -91,7 +91,7 @@ bool say_last_words(Registers registers, ByteRing<N>& waiting, std::span<const s
                     std::uint32_t patience) noexcept
 {
     constexpr std::byte kZero{0};
-    constexpr std::array<std::byte, 4> kBehind{};  // they push the last word out of the UART's own buffers
+    constexpr std::array<std::byte, Uart::kHardwareBytes + 2> kBehind{};  // they push the last word onto the line
     const auto say = [&](std::span<const std::byte> bytes) { return send_waiting<Uart>(registers, bytes, patience); };
     std::byte byte{};
     for (std::size_t i = 0; i < N && waiting.size() <= N && waiting.pop(byte); ++i) {

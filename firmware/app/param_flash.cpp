@@ -11,13 +11,16 @@ namespace {
 /// No name holds its first byte: no value's words are taken for the head of a record.
 constexpr std::uint32_t kRecordMagic = 0x014B4E8A;
 constexpr std::uint32_t kErasedWord = 0xFFFFFFFF;
-constexpr std::uint32_t kUnit = 64;  ///< records begin at multiples of this [bytes]
+constexpr std::uint32_t kBlock = 64;  ///< records begin at multiples of this [bytes]
+static_assert(kBlock % hal::FlashRegion::kMaxUnitBytes == 0);
 
 constexpr std::uint32_t kHeadWords = 3;
 constexpr std::uint32_t kNameWords = 4;
 constexpr std::uint32_t kEntryWords = kNameWords + 1;
 
 constexpr std::uint32_t words_of(std::uint32_t entries) noexcept { return kHeadWords + entries * kEntryWords + 1U; }
+
+constexpr std::uint32_t whole_blocks(std::uint32_t bytes) noexcept { return (bytes + kBlock - 1U) / kBlock * kBlock; }
 
 bool differs(float a, float b) noexcept { return std::bit_cast<std::uint32_t>(a) != std::bit_cast<std::uint32_t>(b); }
 
@@ -102,14 +105,18 @@ private:
 bool ParamFlash::is_valid(const Place& place) const noexcept
 {
     const std::uint32_t most = (region_.sector_bytes() - place.offset) / 4U;
-    const std::uint32_t entries = word(place, 2);
-    if (entries > (most - words_of(0)) / kEntryWords) {
+    const std::optional<std::uint32_t> entries = word(place, 2);
+    if (!entries || *entries > (most - words_of(0)) / kEntryWords) {
         return false;
     }
-    const std::uint32_t last = words_of(entries) - 1U;
+    const std::uint32_t last = words_of(*entries) - 1U;
     Crc crc;
     for (std::uint32_t i = 0; i < last; ++i) {
-        add_word(crc, word(place, i));
+        const std::optional<std::uint32_t> next = word(place, i);
+        if (!next) {
+            return false;
+        }
+        add_word(crc, *next);
     }
     return word(place, last) == crc.value();
 }
@@ -117,38 +124,46 @@ bool ParamFlash::is_valid(const Place& place) const noexcept
 /// The last valid record of a sector: records are written in their order.
 bool ParamFlash::find_newest(std::uint32_t sector, Place& place, bool& damaged) const noexcept
 {
-    for (std::uint32_t unit = region_.sector_bytes() / kUnit; unit > 0; --unit) {
-        place = {sector, (unit - 1U) * kUnit};
-        if (word(place, 0) == kRecordMagic) {
-            if (is_valid(place)) {
-                return true;
-            }
-            damaged = true;
+    for (std::uint32_t block = region_.sector_bytes() / kBlock; block > 0; --block) {
+        place = {sector, (block - 1U) * kBlock};
+        const std::optional<std::uint32_t> head = word(place, 0);
+        if (head == kRecordMagic && is_valid(place)) {
+            return true;
         }
+        damaged = damaged || !head || head == kRecordMagic;
     }
     return false;
 }
 
-/// The first unit of a sector from which on all is erased; its end where there is none.
+/// The first block of a sector from which on all is erased, behind the newest record; its end where there is none.
 std::uint32_t ParamFlash::free_from(std::uint32_t sector) const noexcept
 {
     std::uint32_t end = region_.sector_bytes();
-    while (end > 0 && region_.read(sector, end - 4U) == kErasedWord) {
+    // The newest record may end in erased words: its checksum may be one.
+    const std::uint32_t used = has_newest_ && newest_.sector == sector ? newest_end_ : 0;
+    while (end > used && region_.read(sector, end - 4U) == kErasedWord) {
         end -= 4U;
     }
-    return (end + kUnit - 1U) / kUnit * kUnit;
+    return whole_blocks(end);
 }
 
 ParamLoad ParamFlash::load(ParamValues& values) noexcept
 {
     ParamLoad load;
     bool damaged = false;
+    std::uint32_t entries = 0;
     for (std::uint32_t sector = 0; sector < hal::FlashRegion::kSectors; ++sector) {
         Place place;
-        if (find_newest(sector, place, damaged) && (!has_newest_ || word(place, 1) > sequence_)) {
+        if (!find_newest(sector, place, damaged)) {
+            continue;
+        }
+        const std::uint32_t sequence = word(place, 1).value_or(0);
+        if (!has_newest_ || sequence > sequence_) {
             has_newest_ = true;
             newest_ = place;
-            sequence_ = word(place, 1);
+            sequence_ = sequence;
+            entries = word(place, 2).value_or(0);
+            newest_end_ = place.offset + whole_blocks(4U * words_of(entries));
         }
     }
     next_ = {newest_.sector, free_from(newest_.sector)};
@@ -156,17 +171,17 @@ ParamLoad ParamFlash::load(ParamValues& values) noexcept
         load.damaged = damaged;
         return load;
     }
-    const std::uint32_t entries = word(newest_, 2);
     for (std::uint32_t i = 0; i < entries; ++i) {
         const std::uint32_t at = kHeadWords + i * kEntryWords;
         std::array<char, 4U * kNameWords> name{};
         for (std::uint32_t k = 0; k < name.size(); ++k) {
-            name[k] = static_cast<char>(word(newest_, at + k / 4U) >> (8U * (k % 4U)) & 0xFFU);
+            name[k] = static_cast<char>(word(newest_, at + k / 4U).value_or(0) >> (8U * (k % 4U)) & 0xFFU);
         }
         const std::size_t index = Parameters::find({name.data(), name.size()});
+        const std::optional<std::uint32_t> value = word(newest_, at + kNameWords);
         ++load.taken;
-        if (index < kParamCount) {
-            values[index] = std::bit_cast<float>(word(newest_, at + kNameWords));
+        if (index < kParamCount && value) {
+            values[index] = std::bit_cast<float>(*value);
         } else {
             ++load.unknown;
         }
@@ -195,13 +210,18 @@ bool ParamFlash::make_room(std::uint32_t bytes) noexcept
 bool ParamFlash::write(const ParamValues& initial, const ParamValues& values) noexcept
 {
     RecordWords record(initial, values, sequence_ + 1U);
-    const std::uint32_t bytes = 4U * record.size();
-    if (!make_room(bytes)) {
+    const std::uint32_t words = record.size();
+    const std::uint32_t in_unit = region_.unit_bytes() / 4U;
+    if (!make_room(whole_blocks(4U * words))) {
         return false;
     }
     ++sequence_;
-    for (std::uint32_t offset = 0; offset < bytes; offset += 4U) {
-        if (!region_.program(next_.sector, next_.offset + offset, record.next())) {
+    for (std::uint32_t at = 0; at < words; at += in_unit) {
+        std::array<std::uint32_t, hal::FlashRegion::kMaxUnitBytes / 4U> unit{};
+        for (std::uint32_t i = 0; i < in_unit; ++i) {
+            unit[i] = at + i < words ? record.next() : kErasedWord;
+        }
+        if (!region_.program(next_.sector, next_.offset + 4U * at, {unit.data(), in_unit})) {
             return false;
         }
     }
@@ -210,13 +230,14 @@ bool ParamFlash::write(const ParamValues& initial, const ParamValues& values) no
     }
     has_newest_ = true;
     newest_ = next_;
-    next_.offset += (bytes + kUnit - 1U) / kUnit * kUnit;
+    next_.offset += whole_blocks(4U * words);
+    newest_end_ = next_.offset;
     return true;
 }
 
 bool ParamFlash::is_newest(const ParamValues& initial, const ParamValues& values) const noexcept
 {
-    RecordWords record(initial, values, word(newest_, 1));
+    RecordWords record(initial, values, word(newest_, 1).value_or(0));
     const std::uint32_t size = record.size();
     std::uint32_t same = 0;
     while (same < size && word(newest_, same) == record.next()) {

@@ -23,15 +23,17 @@ struct ParamFlashDiagnostics {
 /// own, with a checksum over all.
 ///
 /// Records follow one another in a sector, each whole; the newest one with the right checksum counts. Where the next
-/// one does not fit, the sector that does not hold the newest record is erased and goes on. So a power cut at any word
+/// one does not fit, the sector that does not hold the newest record is erased and goes on. So a power cut at any unit
 /// of a write or an erase leaves the values before the change or those after it, and a damaged record leaves those
-/// before it; the sector before holds what was in force when it became full.
+/// before it; the sector before holds what was in force when it became full. An unreadable unit counts as damaged, and
+/// as used.
 ///
 /// Record, in words, from a multiple of 64 bytes on: magic, sequence number, number of values n; n times name (16
-/// bytes, filled up with zeros) and value (float); CRC-32 of all before. 36 bytes for one value that differs, 1236 for
-/// 61: 2048 to 102 changes in a sector of 128 KiB.
+/// bytes, filled up with zeros) and value (float); CRC-32 of all before; erased words up to a whole unit of the flash.
+/// 36 bytes for one value that differs, 1236 for 61: 2048 to 102 changes in a sector of 128 KiB. The layout is the same
+/// for every size of unit.
 ///
-/// Memory: 40 bytes. Reading is O(sector bytes); save() the same when it fails or needs the other sector, else
+/// Memory: 44 bytes. Reading is O(sector bytes); save() the same when it fails or needs the other sector, else
 /// O(record).
 class ParamFlash {
 public:
@@ -55,7 +57,7 @@ private:
         std::uint32_t offset = 0;
     };
 
-    [[nodiscard]] std::uint32_t word(const Place& place, std::uint32_t index) const noexcept
+    [[nodiscard]] std::optional<std::uint32_t> word(const Place& place, std::uint32_t index) const noexcept
     {
         return region_.read(place.sector, place.offset + 4U * index);
     }
@@ -69,7 +71,8 @@ private:
     hal::FlashRegion& region_;
     bool has_newest_ = false;
     Place newest_;
-    Place next_;  ///< all from here on in its sector is erased
+    std::uint32_t newest_end_ = 0;  ///< offset of the first block behind it
+    Place next_;                    ///< all from here on in its sector is erased
     std::uint32_t sequence_ = 0;
     ParamFlashDiagnostics diagnostics_;
 };

@@ -15,6 +15,9 @@ class CmsdkUart final : public InterruptSerialPort<Wake> {
     using Base = InterruptSerialPort<Wake>;
 
 public:
+    /// Bytes that the hardware holds after put().
+    static constexpr std::size_t kHardwareBytes = 2;
+
     /// @param wake_transmit  raises the transmit interrupt
     CmsdkUart(Registers registers, Wake wake_transmit) noexcept : Base(wake_transmit), registers_(registers) {}
 

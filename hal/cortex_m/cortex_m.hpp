@@ -18,6 +18,9 @@ using Register = volatile std::uint32_t;
 inline constexpr std::uintptr_t kNvicEnable = 0xE000E100;   ///< ISER0
 inline constexpr std::uintptr_t kNvicPending = 0xE000E200;  ///< ISPR0
 
+/// Waits for all accesses, and has the processor fetch its instructions anew.
+inline void barrier() noexcept { __asm volatile("dsb\nisb" ::: "memory"); }
+
 /// Enables interrupt `irq` (0..239).
 inline void enable_interrupt(unsigned irq) noexcept { at(kNvicEnable + 4U * (irq / 32U)) = 1U << (irq % 32U); }
 

@@ -2,6 +2,7 @@
 #include "hal/cortex_m/startup.hpp"
 
 #include "hal/cortex_m/cortex_m.hpp"
+#include "hal/cortex_m/memory_protection.hpp"
 #include "hal/cortex_m/step_guard.hpp"
 
 extern "C" {
@@ -31,11 +32,6 @@ constexpr std::uintptr_t kMemoryAddress = 0xE000ED34;
 constexpr std::uintptr_t kBusAddress = 0xE000ED38;
 constexpr std::uintptr_t kCoprocessors = 0xE000ED88;  // CPACR
 constexpr std::uintptr_t kFloatContext = 0xE000EF34;  // FPCCR
-constexpr std::uintptr_t kProtectionType = 0xE000ED90;
-constexpr std::uintptr_t kProtectionControl = 0xE000ED94;
-constexpr std::uintptr_t kProtectionRegion = 0xE000ED98;
-constexpr std::uintptr_t kProtectionBase = 0xE000ED9C;
-constexpr std::uintptr_t kProtectionSize = 0xE000EDA0;
 
 constexpr std::uint32_t kPaint = 0xC5C5C5C5;
 constexpr std::uint32_t kMagic = 0x4A494E4B;
@@ -68,24 +64,6 @@ void begin_record(std::uint32_t exception) noexcept
     kept.exception = exception;
     kept.count = count + 1;
     kept.streak = streak + 1;
-}
-
-/// Denies access to the megabyte below the stack: memory there might take an overflow without a fault. Fault handlers
-/// have access (HFNMIENA off). Only if the stack begins on a megabyte and there is a protection unit (ARMv7-M, B3.5).
-void guard_stack() noexcept
-{
-    constexpr std::uint32_t kBytes = 1U << 20U;
-    constexpr std::uint32_t kNoAccess = 1U << 28U | (20U - 1U) << 1U | 1U;  // not executable either; 2^20 bytes; on
-    constexpr std::uint32_t kOnWithDefaults = 5;
-    const std::uintptr_t bottom = reinterpret_cast<std::uintptr_t>(&_stack_bottom);
-    if (bottom % kBytes != 0 || (at(kProtectionType) & 0xFF00U) == 0) {
-        return;
-    }
-    at(kProtectionRegion) = 0;
-    at(kProtectionBase) = static_cast<std::uint32_t>(bottom) - kBytes;
-    at(kProtectionSize) = kNoAccess;
-    at(kProtectionControl) = kOnWithDefaults;
-    __asm volatile("dsb\nisb" ::: "memory");
 }
 
 }  // namespace
@@ -223,8 +201,9 @@ extern "C" void jink_reset_handler()
     second_bottom = second_top = nullptr;
     constexpr std::uint32_t kFpuOn = 0xFU << 20U;
     at(kCoprocessors) = at(kCoprocessors) | kFpuOn;
-    __asm volatile("dsb\nisb" ::: "memory");
-    guard_stack();
+    barrier();
+    guard_stack(MappedRegisters{kSystemControl}, reinterpret_cast<std::uintptr_t>(&_stack_bottom));
+    barrier();
 
     const std::uint32_t* from = &_data_load;
     for (std::uint32_t* to = &_data_start; to < &_data_end; ++to, ++from) {

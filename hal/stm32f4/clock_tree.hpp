@@ -1,25 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "hal/register_block.hpp"
+#include "hal/stm32/clocks.hpp"
 
 namespace jink::hal::stm32f4 {
-
-enum class ClockSource : std::uint8_t {
-    crystal,       ///< 168 MHz from the crystal, the normal case
-    internal_pll,  ///< no crystal: 168 MHz from the internal 16 MHz oscillator, good to 1 % at room temperature
-    internal,      ///< no PLL either: 16 MHz
-    emulator,      ///< no clock control: an emulator's own 168 MHz
-};
-
-/// The resulting clocks [Hz].
-struct Clocks {
-    ClockSource source = ClockSource::internal;
-    std::uint32_t processor = 0;
-    std::uint32_t apb1 = 0;
-    std::uint32_t apb2 = 0;
-    std::uint32_t timer = 0;  ///< of the timers on APB1: twice the bus clock if that is divided
-};
 
 /// Brings the STM32F405 to 168 MHz from a crystal of 8 MHz, or as far as possible: every wait is bounded, and the
 /// result is returned. The flash gets its wait states before the clock rises (ST RM0090, 3.5 and 7).
@@ -27,8 +11,10 @@ struct Clocks {
 /// The control register never reads zero on the chip (the internal oscillator is on after a reset). If it reads zero,
 /// the code runs on an emulator without clock control, and nothing is set.
 template <RegisterBlock Rcc, RegisterBlock Flash>
-[[nodiscard]] Clocks start_clocks(Rcc rcc, Flash flash) noexcept
+[[nodiscard]] stm32::Clocks start_clocks(Rcc rcc, Flash flash) noexcept
 {
+    using stm32::becomes;
+    using stm32::ClockSource;
     constexpr std::uint32_t kControl = 0x00;
     constexpr std::uint32_t kPll = 0x04;
     constexpr std::uint32_t kConfiguration = 0x08;
@@ -47,25 +33,16 @@ template <RegisterBlock Rcc, RegisterBlock Flash>
     constexpr std::uint32_t kInternal = 16'000'000;
     constexpr std::uint32_t kEmulatedTimer = 1'000'000'000;  // qemu's
 
-    const auto becomes = [&](std::uint32_t offset, std::uint32_t mask, std::uint32_t value) {
-        for (std::uint32_t i = 0; i < kPatience; ++i) {
-            if ((rcc.read(offset) & mask) == value) {
-                return true;
-            }
-        }
-        return false;
-    };
-
     if (rcc.read(kControl) == 0) {
         return {ClockSource::emulator, kFull, kFull / 4U, kFull / 2U, kEmulatedTimer};
     }
     rcc.write(kControl, rcc.read(kControl) | kCrystalOn);
-    const bool crystal = becomes(kControl, kCrystalReady, kCrystalReady);
+    const bool crystal = becomes(rcc, kControl, kCrystalReady, kCrystalReady, kPatience);
     // 336 MHz from 1 MHz steps (the input divided by 8 or 16), halved; 48 MHz for peripherals that need it.
     const std::uint32_t divider = crystal ? 8U : 16U;
     rcc.write(kPll, divider | 336U << 6U | 7U << 24U | (crystal ? kUseCrystal : 0U));
     rcc.write(kControl, rcc.read(kControl) | kPllOn);
-    if (!becomes(kControl, kPllReady, kPllReady)) {
+    if (!becomes(rcc, kControl, kPllReady, kPllReady, kPatience)) {
         return {ClockSource::internal, kInternal, kInternal, kInternal, kInternal};
     }
     flash.write(0, kFiveWaitsAndCaches);
@@ -75,7 +52,7 @@ template <RegisterBlock Rcc, RegisterBlock Flash>
     }
     rcc.write(kConfiguration, kApb1By4Apb2By2);
     rcc.write(kConfiguration, kApb1By4Apb2By2 | kUsePll);
-    if (!becomes(kConfiguration, kPllMask, kPllUsed)) {
+    if (!becomes(rcc, kConfiguration, kPllMask, kPllUsed, kPatience)) {
         return {ClockSource::internal, kInternal, kInternal / 4U, kInternal / 2U, kInternal / 2U};
     }
     return {crystal ? ClockSource::crystal : ClockSource::internal_pll, kFull, kFull / 4U, kFull / 2U, kFull / 2U};

@@ -1,18 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "hal/flash_region.hpp"
-#include "hal/register_block.hpp"
+#include "hal/stm32/flash_controller.hpp"
 
 namespace jink::hal::stm32f4 {
+
+/// ST RM0090, 3.9.
+struct FlashLayout {
+    static constexpr std::uint32_t kKey = 0x04;
+    static constexpr std::uint32_t kStatus = 0x0C;
+    static constexpr std::uint32_t kClear = kStatus;  // by ones
+    static constexpr std::uint32_t kControl = 0x10;
+    /// Operation, write protection, alignment, parallelism, sequence.
+    static constexpr std::uint32_t kErrors = 1U << 1U | 1U << 4U | 1U << 5U | 1U << 6U | 1U << 7U;
+    static constexpr std::uint32_t kOtherFlags = 1U << 0U;  // end of operation
+    static constexpr std::uint32_t kBusy = 1U << 16U;
+    static constexpr std::uint32_t kLock = 1U << 31U;
+};
 
 /// Two neighbouring sectors of 128 KiB of the STM32F405's flash (ST RM0090, 3.5 to 3.9), programmed by 32-bit words:
 /// the supply must be 2.7 V or more.
 ///
 /// During an operation the processor stops at its next fetch from flash, and interrupts wait: 16 us for a word (100 us
-/// at most), 1 s for a sector (2 s at most; ST DS8626, flash memory characteristics). The controller is locked except
-/// during an operation. A controller that does not read as locked beforehand is absent or faulty, and is not used. A
-/// controller that stays busy or locked is never accessed again, because the chip would stop, or fault.
+/// at most), 1 s for a sector (2 s at most; ST DS8626, flash memory characteristics).
 ///
 /// @tparam Erasing  called with true before a sector is erased and with false afterwards: watchdogs must allow for
 ///                  the time between
@@ -28,36 +38,41 @@ public:
     /// @param first      number of that sector, 5..10
     Flash(Registers registers, Memory memory, std::uint32_t first, Erasing erasing,
           std::uint32_t erase_patience = kErasePatience) noexcept
-        : registers_(registers), memory_(memory), erasing_(erasing), first_(first), erase_patience_(erase_patience)
+        : controller_(registers), memory_(memory), erasing_(erasing), first_(first), erase_patience_(erase_patience)
     {
     }
 
     [[nodiscard]] std::uint32_t sector_bytes() const noexcept override { return kSectorBytes; }
+    [[nodiscard]] std::uint32_t unit_bytes() const noexcept override { return 4; }
 
-    [[nodiscard]] std::uint32_t read(std::uint32_t sector, std::uint32_t offset) const noexcept override
+    [[nodiscard]] std::optional<std::uint32_t> read(std::uint32_t sector, std::uint32_t offset) noexcept override
     {
+        if (controller_.is_broken()) {
+            return std::nullopt;  // a read of a busy flash would stop the bus
+        }
         return memory_.read(sector * kSectorBytes + offset);
     }
 
-    [[nodiscard]] bool program(std::uint32_t sector, std::uint32_t offset, std::uint32_t word) noexcept override
+    [[nodiscard]] bool program(std::uint32_t sector, std::uint32_t offset,
+                               std::span<const std::uint32_t> unit) noexcept override
     {
-        if (!unlock()) {
+        if (unit.size() != 1 || !controller_.unlock()) {
             return false;
         }
-        registers_.write(kControl, kWords | kProgram);
-        memory_.write(sector * kSectorBytes + offset, word);
-        return finish(kProgramPatience) && read(sector, offset) == word;
+        controller_.control(kWords | kProgram);
+        memory_.write(sector * kSectorBytes + offset, unit[0]);
+        return finish(kProgramPatience) && read(sector, offset) == unit[0];
     }
 
     [[nodiscard]] bool erase(std::uint32_t sector) noexcept override
     {
-        if (!unlock()) {
+        if (!controller_.unlock()) {
             return false;
         }
         const std::uint32_t which = kWords | kSectorErase | (first_ + sector) << kSectorNumber;
         erasing_(true);
-        registers_.write(kControl, which);
-        registers_.write(kControl, which | kStart);
+        controller_.control(which);
+        controller_.registers().write(FlashLayout::kControl, which | kStart);
         const bool done = finish(erase_patience_);
         erasing_(false);
         return done;
@@ -65,76 +80,43 @@ public:
 
 private:
     static constexpr std::uint32_t kAccess = 0x00;  // FLASH_ACR
-    static constexpr std::uint32_t kKey = 0x04;
-    static constexpr std::uint32_t kStatus = 0x0C;
-    static constexpr std::uint32_t kControl = 0x10;
-
-    static constexpr std::uint32_t kDataCache = 1U << 10U;  // of kAccess
+    static constexpr std::uint32_t kDataCache = 1U << 10U;
     static constexpr std::uint32_t kDataCacheReset = 1U << 12U;
-    static constexpr std::uint32_t kKey1 = 0x45670123;
-    static constexpr std::uint32_t kKey2 = 0xCDEF89AB;
-    static constexpr std::uint32_t kEnd = 1U << 0U;  // of kStatus
-    /// Operation, write protection, alignment, parallelism, sequence.
-    static constexpr std::uint32_t kErrors = 1U << 1U | 1U << 4U | 1U << 5U | 1U << 6U | 1U << 7U;
-    static constexpr std::uint32_t kBusy = 1U << 16U;
-    static constexpr std::uint32_t kProgram = 1U << 0U;  // of kControl
+    static constexpr std::uint32_t kProgram = 1U << 0U;  // of the control register
     static constexpr std::uint32_t kSectorErase = 1U << 1U;
     static constexpr std::uint32_t kSectorNumber = 3;
     static constexpr std::uint32_t kWords = 2U << 8U;
     static constexpr std::uint32_t kStart = 1U << 16U;
-    static constexpr std::uint32_t kLock = 1U << 31U;
 
     static constexpr std::uint32_t kProgramPatience = 10'000;
 
-    [[nodiscard]] bool unlock() noexcept
-    {
-        if (broken_ || (registers_.read(kControl) & kLock) == 0 || (registers_.read(kStatus) & kBusy) != 0) {
-            return false;
-        }
-        registers_.write(kKey, kKey1);
-        registers_.write(kKey, kKey2);
-        broken_ = (registers_.read(kControl) & kLock) != 0;  // repeating the keys is a bus fault
-        if (broken_) {
-            return false;
-        }
-        registers_.write(kStatus, kErrors | kEnd);  // of an earlier operation, or a debugger's
-        return true;
-    }
-
-    /// Waits for the end, and locks. False: an error, or a time-out.
     [[nodiscard]] bool finish(std::uint32_t patience) noexcept
     {
-        std::uint32_t status = registers_.read(kStatus);
-        for (std::uint32_t i = 0; i < patience && (status & kBusy) != 0; ++i) {
-            status = registers_.read(kStatus);
+        const bool good = controller_.finish(patience);
+        if (!controller_.is_broken()) {
+            forget_cached_data();
         }
-        broken_ = (status & kBusy) != 0;
-        if (broken_) {
-            return false;  // a write to the control register would stop the bus
-        }
-        registers_.write(kControl, kLock);
-        forget_cached_data();
-        return (status & kErrors) == 0;
+        return good;
     }
 
     /// The cache may hold older data than the programmed or erased flash. It can be reset only while off. No code lies
     /// in the two sectors: cached instructions stay valid.
     void forget_cached_data() noexcept
     {
-        const std::uint32_t access = registers_.read(kAccess);
+        Registers& registers = controller_.registers();
+        const std::uint32_t access = registers.read(kAccess);
         const std::uint32_t off = access & ~kDataCache;
-        registers_.write(kAccess, off);
-        registers_.write(kAccess, off | kDataCacheReset);
-        registers_.write(kAccess, off);
-        registers_.write(kAccess, access);
+        registers.write(kAccess, off);
+        registers.write(kAccess, off | kDataCacheReset);
+        registers.write(kAccess, off);
+        registers.write(kAccess, access);
     }
 
-    Registers registers_;
+    stm32::FlashController<FlashLayout, Registers> controller_;
     Memory memory_;
     Erasing erasing_;
     std::uint32_t first_;
     std::uint32_t erase_patience_;
-    bool broken_ = false;
 };
 
 }  // namespace jink::hal::stm32f4

@@ -37,12 +37,14 @@ FLOORS = (
 )
 # Files of a folder itself, outside its modules (core/capacity.hpp), may be included by the whole folder.
 CORE = ("core",) + tuple(room for floor in FLOORS for room in floor)
-HAL_PLATFORMS = ("hal/linux", "hal/memory", "hal/cmsdk", "hal/stm32f4")
-# The processor that several platforms share.
-HAL_SHARED = ("hal/cortex_m",)
+HAL_PLATFORMS = ("hal/linux", "hal/memory", "hal/cmsdk", "hal/stm32f4", "hal/stm32h7")
+# Parts that the platforms of one family share.
+HAL_FAMILIES = {"hal/stm32f4": "hal/stm32", "hal/stm32h7": "hal/stm32"}
+# The processor that several platforms share, and the families.
+HAL_SHARED = ("hal/cortex_m", "hal/stm32")
 HAL_INTERFACES = ("hal",)
-# Common to the images of one processor.
-IMAGES_SHARED = ("firmware/cortex_m",)
+# Common to the images of one processor, or of one family of chips.
+IMAGES_SHARED = ("firmware/cortex_m", "firmware/stm32")
 
 # System headers that flashed code may include. None of them uses heap, I/O, clock or threads. <new> is for placement
 # only, enforced by the images' lack of an allocator.
@@ -71,7 +73,7 @@ def rules():
     known = floors_below()
     known["hal"] = {"hal"}
     for platform in HAL_PLATFORMS:
-        known[platform] = {"hal", platform}
+        known[platform] = {"hal", platform, HAL_FAMILIES.get(platform, platform)}
     for shared in HAL_SHARED:
         known[shared] = {"hal", shared}
     known["firmware/link"] = {"core", "core/base", "core/world", "firmware/link"}

@@ -26,7 +26,6 @@ PREFIXES = {"kMost": "kMax", "kLeast": "kMin"}
 # (files, word): why the word is right there.
 EXCUSED = {
     ("firmware/linux/read_ahead.hpp", "room"): "the name of a parameter: free space of a queue",
-    ("hal/stm32f4/clock_tree.hpp", "room"): "room temperature",
     ("tests/property/core/orca/published_rooms_test.cpp", "room"): "the buildings that Alejo draws",
     ("tests/property/core/orca/published_rooms_test.cpp", "rooms"): "the buildings that Alejo draws",
     ("tests/target/board/counters.cpp", "guard"): "the C++ ABI's guard variable",

@@ -21,7 +21,7 @@ COMPILERS = {"mps2_an500": "arm-none-eabi-g++", "stm32f405": "arm-none-eabi-g++"
 STAGED = "mps2_an500"  # counted per stage; the other targets in total, which takes half the time
 # core/base/work_budget.hpp: largest number of instructions per work unit.
 MOST_PER_UNIT = 170
-# The boards' clocks [MHz]: firmware/*/main.cpp (kRate). Their updates and steps are counted with the work of these.
+# The boards' clocks [MHz]: firmware/*/main.cpp (kRate, kClock). Their updates and steps are counted with the work of these.
 CLOCKS = {"mps2_an500": 216, "stm32f405": 168}
 REDUCED_SETS = ("stm32f405",)  # these fly the reduced reach sets
 FASTER = 480  # of another Cortex-M7, which the same image runs on [MHz]

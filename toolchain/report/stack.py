@@ -30,7 +30,7 @@ INDIRECT = [
      [r"link7mavlink8Endpoint", r"9CmsdkUartI", r"5UsartI", r"13CmsdkWatchdogI", r"19IndependentWatchdogI", r"15GuardedWatchdogI", r"3app6CanBus"]),
     (r"3app6CanBus", [r"5BxCanI"]),
     (r"link7mavlink8Endpoint", []),  # consumers of points: none on an image
-    (r"3app10ParamFlash", [r"7stm32f45FlashI"]),
+    (r"3app10ParamFlash", [r"7stm32(f4|h7)5FlashI"]),
     (r"5reach7Planner(4look|7try_set)", []),  # raters of cells: none on an image
     (r"8dronecan4Node", [r"12ParamService"]),
     (r"jink_reset_handler", [r"_GLOBAL__sub_I"]),

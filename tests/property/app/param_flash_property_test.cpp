@@ -13,8 +13,9 @@
 namespace jink::app {
 namespace {
 
-/// A record of six values has three units of 64 bytes: five to sixteen records fill a sector.
-using CutFlash = hal::MemoryFlash<1024>;
+/// A record of six values has three blocks of 64 bytes: five to sixteen records fill a sector.
+template <std::uint32_t UnitBytes, hal::WrongCode Wrong = hal::WrongCode::unreadable>
+using CutFlash = hal::MemoryFlash<1024, UnitBytes, Wrong>;
 
 /// Up to two parameters change; of six, so that values go back to the image's own as well.
 void change(Random& random, const ParamValues& own, ParamValues& values)
@@ -39,10 +40,12 @@ struct Outcomes {
 };
 
 /// Changes with a cut in some of them; after each cut a restart.
+template <class Flash>
 void run(std::uint64_t seed, const ParamValues& own, Outcomes& out)
 {
     Random random(seed);
-    CutFlash flash;
+    Flash flash;
+    const std::uint32_t words_in_unit = flash.unit_bytes() / 4;
     ParamValues before = own;
     ParamValues after = own;
     bool was_saved = false;
@@ -60,9 +63,9 @@ void run(std::uint64_t seed, const ParamValues& own, Outcomes& out)
             return;
         }
         before = found;
-        // Within a record, or in the erase of 256 words.
+        // Within a record, or in the erase of a sector.
         const std::uint32_t mask = random.below(3) == 0 ? ~0U : static_cast<std::uint32_t>(random.next());
-        flash.cut_at(random.below(random.below(2) == 0 ? 200 : 700), mask);
+        flash.cut_at(random.below(random.below(2) == 0 ? 200 : 700) / words_in_unit, mask);
         for (bool goes_on = true; goes_on;) {
             after = before;
             change(random, own, after);
@@ -76,14 +79,20 @@ void run(std::uint64_t seed, const ParamValues& own, Outcomes& out)
     out.erases += flash.erases();
 }
 
-TEST(ParamFlashLaws, ACutAtARandomWordLeavesTheValuesBeforeOrAfterTheChange)
+template <class Flash>
+class ParamFlashLaws : public testing::Test {
+};
+using CutFlashes = testing::Types<CutFlash<4>, CutFlash<8>, CutFlash<32>, CutFlash<32, hal::WrongCode::as_it_looks>>;
+TYPED_TEST_SUITE(ParamFlashLaws, CutFlashes);
+
+TYPED_TEST(ParamFlashLaws, ACutAtARandomUnitLeavesTheValuesBeforeOrAfterTheChange)
 {
     const ParamValues own = Parameters().values();
     const std::uint64_t sequences = from_environment("JINK_CASES", 10'000);
     const std::uint64_t first = from_environment("JINK_SEED", 20260901);
     Outcomes out;
     for (std::uint64_t i = 0; i < sequences && out.wrong < 5; ++i) {
-        run(first + i, own, out);
+        run<TypeParam>(first + i, own, out);
     }
     if (sequences < 1000) {
         return;

@@ -1,88 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Parameters in flash: cuts at every word, damage, records of other versions.
-#include <bit>
+// Parameters in flash of every kind: cuts at every unit, damage, records of other versions.
 #include <cmath>
-#include <cstring>
 #include <limits>
-#include <string>
-#include <vector>
 
-#include <gtest/gtest.h>
-
-#include "firmware/app/param_flash.hpp"
-#include "tests/memory_flash.hpp"
+#include "tests/unit/app/param_flash_bench.hpp"
 
 namespace jink::app {
 namespace {
 
-constexpr std::uint32_t kSmall = 512;
-using SmallFlash = hal::MemoryFlash<kSmall>;
-using RoomyFlash = hal::MemoryFlash<4096>;
+template <class Kind>
+class ParamFlashStore : public testing::Test {
+};
+TYPED_TEST_SUITE(ParamFlashStore, FlashKinds);
 
-ParamValues own() { return Parameters().values(); }
-
-ParamValues own_with(Param p, float value)
+TYPED_TEST(ParamFlashStore, ErasedFlashHoldsNothing)
 {
-    ParamValues values = own();
-    values[static_cast<std::size_t>(p)] = value;
-    return values;
-}
-
-/// The parameters after a restart.
-ParamValues restarted(hal::FlashRegion& flash, ParamLoad* load = nullptr)
-{
-    ParamFlash store(flash);
-    ParamValues values = own();
-    const ParamLoad found = store.load(values);
-    if (load != nullptr) {
-        *load = found;
-    }
-    return values;
-}
-
-bool saved(hal::FlashRegion& flash, const ParamValues& values)
-{
-    ParamFlash store(flash);
-    ParamValues before = own();
-    static_cast<void>(store.load(before));
-    return store.save(own(), values);
-}
-
-/// A record, made by hand from the header's text: another checksum's code than that of the store.
-std::vector<std::uint32_t> record_of(std::uint32_t sequence, const std::vector<std::pair<std::string, float>>& entries)
-{
-    std::vector<std::uint32_t> words{0x014B4E8A, sequence, static_cast<std::uint32_t>(entries.size())};
-    for (const auto& [name, value] : entries) {
-        std::string padded = name;
-        padded.resize(16, '\0');
-        for (std::size_t i = 0; i < 16; i += 4) {
-            std::uint32_t word = 0;
-            std::memcpy(&word, padded.data() + i, 4);
-            words.push_back(word);
-        }
-        words.push_back(std::bit_cast<std::uint32_t>(value));
-    }
-    std::uint32_t crc = 0xFFFFFFFF;
-    for (const std::uint32_t word : words) {
-        for (int bit = 0; bit < 32; ++bit) {
-            const std::uint32_t differs = (crc ^ (word >> bit)) & 1U;
-            crc = (crc >> 1U) ^ (differs != 0 ? 0xEDB88320U : 0U);
-        }
-    }
-    words.push_back(~crc);
-    return words;
-}
-
-void put(hal::FlashRegion& flash, std::uint32_t sector, std::uint32_t offset, const std::vector<std::uint32_t>& words)
-{
-    for (std::size_t i = 0; i < words.size(); ++i) {
-        ASSERT_TRUE(flash.program(sector, offset + static_cast<std::uint32_t>(4 * i), words[i]));
-    }
-}
-
-TEST(ParamFlash, ErasedFlashHoldsNothing)
-{
-    SmallFlash flash;
+    typename TypeParam::template Of<kSmall> flash;
     ParamLoad load;
     EXPECT_EQ(restarted(flash, &load), own());
     EXPECT_EQ(load.taken, 0U);
@@ -90,9 +23,9 @@ TEST(ParamFlash, ErasedFlashHoldsNothing)
     EXPECT_EQ(flash.steps(), 0U) << "nothing is written by looking";
 }
 
-TEST(ParamFlash, AllParametersComeBackBitForBit)
+TYPED_TEST(ParamFlashStore, AllParametersComeBackBitForBit)
 {
-    RoomyFlash flash;
+    typename TypeParam::template Of<4096> flash;
     ParamValues values = own();
     for (std::size_t i = 0; i < kParamCount; ++i) {
         values[i] = std::nextafter(values[i], 1e9F);
@@ -101,14 +34,14 @@ TEST(ParamFlash, AllParametersComeBackBitForBit)
     ParamLoad load;
     EXPECT_EQ(restarted(flash, &load), values);
     EXPECT_EQ(load.taken, kParamCount);
-    EXPECT_EQ(flash.steps(), 3U + 5U * kParamCount + 1U);
+    EXPECT_EQ(flash.steps(), TypeParam::units(3U + 5U * kParamCount + 1U));
     ASSERT_TRUE(saved(flash, own())) << "and back";
     EXPECT_EQ(restarted(flash), own());
 }
 
-TEST(ParamFlash, TheRecordIsTheDocumentedOne)
+TYPED_TEST(ParamFlashStore, TheRecordIsTheDocumentedOne)
 {
-    RoomyFlash flash;
+    typename TypeParam::template Of<4096> flash;
     ASSERT_TRUE(saved(flash, own_with(Param::track_age, 7.3F)));
     const auto expected = record_of(1, {{"TRK_AGE", 7.3F}});
     for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -123,9 +56,9 @@ TEST(ParamFlash, TheRecordIsTheDocumentedOne)
     EXPECT_EQ(restarted(flash), both);
 }
 
-TEST(ParamFlash, NamesThatThereAreNoMoreAreCountedAndTheOthersTaken)
+TYPED_TEST(ParamFlashStore, NamesThatThereAreNoMoreAreCountedAndTheOthersTaken)
 {
-    RoomyFlash flash;
+    typename TypeParam::template Of<4096> flash;
     put(flash, 1, 0, record_of(7, {{"OLD_NAME", 1.0F}, {"TRK_AGE", 9.0F}, {"A_NAME_OF_16_CHR", 2.0F}}));
     ParamLoad load;
     EXPECT_EQ(restarted(flash, &load), own_with(Param::track_age, 9.0F));
@@ -135,9 +68,9 @@ TEST(ParamFlash, NamesThatThereAreNoMoreAreCountedAndTheOthersTaken)
     EXPECT_EQ(flash.read(1, 128 + 4), 8U) << "behind it, in its sector";
 }
 
-TEST(ParamFlash, TheSameValuesAreNotWrittenAgain)
+TYPED_TEST(ParamFlashStore, TheSameValuesAreNotWrittenAgain)
 {
-    SmallFlash flash;
+    typename TypeParam::template Of<kSmall> flash;
     ASSERT_TRUE(saved(flash, own_with(Param::track_age, 9.0F)));
     const std::uint64_t steps = flash.steps();
     EXPECT_TRUE(saved(flash, own_with(Param::track_age, 9.0F)));
@@ -146,24 +79,24 @@ TEST(ParamFlash, TheSameValuesAreNotWrittenAgain)
     EXPECT_GT(flash.steps(), steps);
 }
 
-TEST(ParamFlash, ACutAtAnyWordLeavesTheValuesBeforeOrAfterTheChange)
+TYPED_TEST(ParamFlashStore, ACutAtAnyUnitLeavesTheValuesBeforeOrAfterTheChange)
 {
-    // Nineteen changes: three sectors are filled, so the second and the third by an erase. Of the word that is cut no
+    // Nineteen changes: three sectors are filled, so the second and the third by an erase. Of the unit that is cut no
     // bit, all bits or every other bit has changed.
     constexpr int kChanges = 19;
     const auto values_of = [](int change) {
         return change == 0 ? own() : own_with(Param::track_age, 1.0F + 0.1F * static_cast<float>(change));
     };
-    SmallFlash uncut;
+    typename TypeParam::template Of<kSmall> uncut;
     for (int i = 1; i <= kChanges; ++i) {
         ASSERT_TRUE(saved(uncut, values_of(i)));
     }
     ASSERT_EQ(uncut.erases(), 2U);
-    int before = 0;
-    int after = 0;
+    std::uint64_t before = 0;
+    std::uint64_t after = 0;
     for (std::uint64_t step = 0; step < uncut.steps(); ++step) {
         for (const std::uint32_t mask : {0U, 0x55555555U, ~0U}) {
-            SmallFlash flash;
+            typename TypeParam::template Of<kSmall> flash;
             flash.cut_at(step, mask);
             int change = 1;
             for (; saved(flash, values_of(change)); ++change) {
@@ -179,11 +112,11 @@ TEST(ParamFlash, ACutAtAnyWordLeavesTheValuesBeforeOrAfterTheChange)
             }
         }
     }
-    EXPECT_GT(before, 1000);
-    EXPECT_EQ(after, kChanges) << "the last word of each, whole";
+    EXPECT_GT(before, 2 * uncut.steps());
+    EXPECT_EQ(after, kChanges) << "the last unit of each, whole";
 }
 
-TEST(ParamFlash, ACutWithinARecordOfAllParametersLeavesNoMixture)
+TYPED_TEST(ParamFlashStore, ACutWithinARecordOfAllParametersLeavesNoMixture)
 {
     ParamValues first = own();
     ParamValues second = own();
@@ -191,9 +124,9 @@ TEST(ParamFlash, ACutWithinARecordOfAllParametersLeavesNoMixture)
         first[i] = std::nextafter(first[i], 1e9F);
         second[i] = std::nextafter(second[i], -1e9F);
     }
-    for (std::uint64_t step = 0; step < 3U + 5U * kParamCount + 1U; ++step) {
+    for (std::uint64_t step = 0; step < TypeParam::units(3U + 5U * kParamCount + 1U); ++step) {
         for (const std::uint32_t mask : {0U, 0x0F0F0F0FU}) {
-            RoomyFlash flash;
+            typename TypeParam::template Of<4096> flash;
             ASSERT_TRUE(saved(flash, first));
             flash.cut_at(step, mask);
             ASSERT_FALSE(saved(flash, second));
@@ -203,10 +136,10 @@ TEST(ParamFlash, ACutWithinARecordOfAllParametersLeavesNoMixture)
     }
 }
 
-TEST(ParamFlash, OneFlippedBitAnywhereInTheNewestRecordLeavesTheOneBefore)
+TYPED_TEST(ParamFlashStore, OneFlippedBitAnywhereInTheNewestRecordLeavesTheOneBefore)
 {
     for (std::uint32_t bit = 0; bit < 32U * 9U; ++bit) {
-        SmallFlash flash;
+        typename TypeParam::template Of<kSmall> flash;
         ASSERT_TRUE(saved(flash, own_with(Param::track_age, 8.0F)));
         ASSERT_TRUE(saved(flash, own_with(Param::track_age, 9.0F)));
         flash.flip(0, 64 + bit / 32U * 4U, 1U << bit % 32U);
@@ -216,9 +149,9 @@ TEST(ParamFlash, OneFlippedBitAnywhereInTheNewestRecordLeavesTheOneBefore)
     }
 }
 
-TEST(ParamFlash, ASectorThatIsDamagedAsAWholeLeavesTheOther)
+TYPED_TEST(ParamFlashStore, ASectorThatIsDamagedAsAWholeLeavesTheOther)
 {
-    SmallFlash flash;
+    typename TypeParam::template Of<kSmall> flash;
     for (int i = 1; i <= 10; ++i) {  // eight in the first sector
         ASSERT_TRUE(saved(flash, own_with(Param::track_age, static_cast<float>(i))));
     }
@@ -231,9 +164,9 @@ TEST(ParamFlash, ASectorThatIsDamagedAsAWholeLeavesTheOther)
     EXPECT_EQ(flash.erases(), 2U);
 }
 
-TEST(ParamFlash, RecordsOfWhichNoneIsWholeAreDamage)
+TYPED_TEST(ParamFlashStore, RecordsOfWhichNoneIsWholeAreDamage)
 {
-    SmallFlash flash;
+    typename TypeParam::template Of<kSmall> flash;
     ASSERT_TRUE(saved(flash, own_with(Param::track_age, 8.0F)));
     flash.flip(0, 8, 0x80000000);  // a number of values beyond the sector
     ParamLoad load;
@@ -245,9 +178,9 @@ TEST(ParamFlash, RecordsOfWhichNoneIsWholeAreDamage)
     EXPECT_FALSE(load.damaged);
 }
 
-TEST(ParamFlash, WhatAnotherProgramLeftInBothSectorsIsErasedAndNoDamage)
+TYPED_TEST(ParamFlashStore, WhatAnotherProgramLeftInBothSectorsIsErasedAndNoDamage)
 {
-    SmallFlash flash;
+    typename TypeParam::template Of<kSmall> flash;
     for (std::uint32_t offset = 0; offset < kSmall; offset += 4) {
         flash.flip(0, offset, ~0U);
         flash.flip(1, offset, offset * 2654435761U);
@@ -261,30 +194,36 @@ TEST(ParamFlash, WhatAnotherProgramLeftInBothSectorsIsErasedAndNoDamage)
 }
 
 /// Flash with configurable faults.
+template <class Inner>
 class FailingFlash final : public hal::FlashRegion {
 public:
     std::uint32_t sector_bytes() const noexcept override { return kSmall; }
-    std::uint32_t read(std::uint32_t sector, std::uint32_t offset) const noexcept override
+    std::uint32_t unit_bytes() const noexcept override { return inner.unit_bytes(); }
+    std::optional<std::uint32_t> read(std::uint32_t sector, std::uint32_t offset) noexcept override
     {
         return inner.read(sector, offset);
     }
-    bool program(std::uint32_t sector, std::uint32_t offset, std::uint32_t word) noexcept override
+    bool program(std::uint32_t sector, std::uint32_t offset, std::span<const std::uint32_t> unit) noexcept override
     {
-        const bool done = programs && inner.program(sector, offset, lies || drops ? word & 0xFFFF0000U : word);
+        std::vector<std::uint32_t> words(unit.begin(), unit.end());
+        for (std::uint32_t& word : words) {
+            word &= lies || drops ? 0xFFFF0000U : ~0U;
+        }
+        const bool done = programs && inner.program(sector, offset, words);
         return drops || (done && !lies);
     }
     bool erase(std::uint32_t sector) noexcept override { return erases && (leaves || inner.erase(sector)); }
 
-    SmallFlash inner;
+    Inner inner;
     bool programs = true, erases = true;
     bool lies = false;    ///< other words than those asked for
     bool drops = false;   ///< the same, and reports success
     bool leaves = false;  ///< reports erased, and is not
 };
 
-TEST(ParamFlash, AFailureIsCountedAndKeepsWhatIsThere)
+TYPED_TEST(ParamFlashStore, AFailureIsCountedAndKeepsWhatIsThere)
 {
-    FailingFlash flash;
+    FailingFlash<typename TypeParam::template Of<kSmall>> flash;
     ParamFlash store(flash);
     ParamValues values = own();
     static_cast<void>(store.load(values));
@@ -320,9 +259,9 @@ TEST(ParamFlash, AFailureIsCountedAndKeepsWhatIsThere)
     EXPECT_EQ(store.diagnostics().writes, 9U);
 }
 
-TEST(ParamFlash, ARecordThatFitsNoSectorIsRefusedWithoutAnErase)
+TYPED_TEST(ParamFlashStore, ARecordThatFitsNoSectorIsRefusedWithoutAnErase)
 {
-    SmallFlash flash;
+    typename TypeParam::template Of<kSmall> flash;
     ParamValues values = own();
     for (std::size_t i = 0; i < kParamCount; ++i) {
         values[i] = std::nextafter(values[i], 1e9F);
@@ -333,9 +272,9 @@ TEST(ParamFlash, ARecordThatFitsNoSectorIsRefusedWithoutAnErase)
     EXPECT_EQ(restarted(flash), own_with(Param::track_age, 8.0F));
 }
 
-TEST(ParamFlash, ARecordThatFillsASectorToItsEndFits)
+TYPED_TEST(ParamFlashStore, ARecordThatFillsASectorToItsEndFits)
 {
-    hal::MemoryFlash<256> flash;  // twelve values: 64 words
+    typename TypeParam::template Of<256> flash;  // twelve values: 64 words
     for (const float offset : {1.0F, 2.0F, 3.0F}) {
         ParamValues values = own();
         for (std::size_t i = 0; i < 12; ++i) {
@@ -347,9 +286,9 @@ TEST(ParamFlash, ARecordThatFillsASectorToItsEndFits)
     EXPECT_EQ(flash.erases(), 2U);
 }
 
-TEST(ParamFlash, NothingIsJudgedByTheStore)
+TYPED_TEST(ParamFlashStore, NothingIsJudgedByTheStore)
 {
-    RoomyFlash flash;
+    typename TypeParam::template Of<4096> flash;
     const float nan = std::numeric_limits<float>::quiet_NaN();
     put(flash, 0, 0, record_of(1, {{"TRK_AGE", nan}, {"TRK_RADIUS", -1e30F}}));
     const ParamValues values = restarted(flash);

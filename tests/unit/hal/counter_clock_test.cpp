@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "core/base/random.hpp"
+#include "hal/stm32/independent_watchdog.hpp"
 #include "hal/stm32f4/clock_tree.hpp"
-#include "hal/stm32f4/independent_watchdog.hpp"
 
 namespace jink::hal {
 namespace {
@@ -87,8 +87,8 @@ double pll_output(const RccModel& m)
 TEST(ClockTree, ReachesFullSpeedFromTheCrystal)
 {
     RccModel model;
-    const stm32f4::Clocks clocks = stm32f4::start_clocks(ByRcc{&model}, ByFlash{&model});
-    EXPECT_EQ(clocks.source, stm32f4::ClockSource::crystal);
+    const stm32::Clocks clocks = stm32f4::start_clocks(ByRcc{&model}, ByFlash{&model});
+    EXPECT_EQ(clocks.source, stm32::ClockSource::crystal);
     EXPECT_EQ(clocks.processor, 168'000'000U);
     EXPECT_EQ(clocks.apb1, 42'000'000U);
     EXPECT_EQ(clocks.apb2, 84'000'000U);
@@ -103,14 +103,13 @@ TEST(ClockTree, GoesOnWithoutACrystalWithoutAPllAndWithoutClockControl)
 {
     RccModel no_crystal;
     no_crystal.has_crystal = false;
-    EXPECT_EQ(stm32f4::start_clocks(ByRcc{&no_crystal}, ByFlash{&no_crystal}).source,
-              stm32f4::ClockSource::internal_pll);
+    EXPECT_EQ(stm32f4::start_clocks(ByRcc{&no_crystal}, ByFlash{&no_crystal}).source, stm32::ClockSource::internal_pll);
     EXPECT_DOUBLE_EQ(pll_output(no_crystal), 168e6);
 
     RccModel no_pll;
     no_pll.has_pll = false;
-    const stm32f4::Clocks slow = stm32f4::start_clocks(ByRcc{&no_pll}, ByFlash{&no_pll});
-    EXPECT_EQ(slow.source, stm32f4::ClockSource::internal);
+    const stm32::Clocks slow = stm32f4::start_clocks(ByRcc{&no_pll}, ByFlash{&no_pll});
+    EXPECT_EQ(slow.source, stm32::ClockSource::internal);
     EXPECT_EQ(slow.processor, 16'000'000U);
     EXPECT_EQ(slow.apb2, 16'000'000U);
     EXPECT_EQ(slow.timer, 16'000'000U);
@@ -121,8 +120,8 @@ TEST(ClockTree, GoesOnWithoutACrystalWithoutAPllAndWithoutClockControl)
 
     RccModel nothing;
     nothing.control = 0;
-    const stm32f4::Clocks emulated = stm32f4::start_clocks(ByRcc{&nothing}, ByFlash{&nothing});
-    EXPECT_EQ(emulated.source, stm32f4::ClockSource::emulator);
+    const stm32::Clocks emulated = stm32f4::start_clocks(ByRcc{&nothing}, ByFlash{&nothing});
+    EXPECT_EQ(emulated.source, stm32::ClockSource::emulator);
     EXPECT_EQ(emulated.processor, 168'000'000U);
 }
 
@@ -138,7 +137,7 @@ struct ByWatchdog {
 TEST(IndependentWatchdog, IsStartedUnlockedSetAndFed)
 {
     WatchdogModel model;
-    stm32f4::IndependentWatchdog<ByWatchdog> watchdog{ByWatchdog{&model}};
+    stm32::IndependentWatchdog<ByWatchdog> watchdog{ByWatchdog{&model}};
     watchdog.start(250);
     watchdog.feed();
     const std::vector<std::pair<std::uint32_t, std::uint32_t>> expected{{0, 0xCCCC}, {0, 0x5555}, {4, 3},

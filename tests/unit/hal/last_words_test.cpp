@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include "core/base/random.hpp"
-#include "hal/stm32f4/reset_cause.hpp"
 
 namespace jink::hal {
 namespace {
@@ -94,6 +93,7 @@ struct Line {
     void write(std::uint32_t, std::uint32_t value) { sent->push_back(static_cast<std::byte>(value)); }
 };
 struct LineUart {
+    static constexpr std::size_t kHardwareBytes = 2;
     static bool has_room(Line& line) { return line.read(0) != 0; }
     static void put(Line& line, std::byte byte) { line.write(0, std::to_integer<std::uint32_t>(byte)); }
 };
@@ -137,40 +137,6 @@ TEST(SayLastWords, ARingWhoseIndicesCannotBeRightIsPassedOver)
     const Bytes words = bytes_of("x");
     EXPECT_TRUE(say_last_words<LineUart>(Line{&sent}, ring, words, 2, 10));
     EXPECT_EQ(sent.size(), 2U + 1U + 4U);
-}
-
-/// RCC_CSR as RM0090, 7.3.21 has it: flags stay until RMVF is written.
-struct ResetCauseModel {
-    std::uint32_t* csr;
-    [[nodiscard]] std::uint32_t read(std::uint32_t offset) const { return offset == 0x74 ? *csr : 0U; }
-    void write(std::uint32_t offset, std::uint32_t value) const
-    {
-        ASSERT_EQ(offset, 0x74U);
-        *csr = (value & (1U << 24U)) != 0 ? *csr & 0x00FFFFFFU : *csr;
-    }
-};
-
-TEST(ResetCause, EachIsReportedOnce)
-{
-    using stm32f4::ResetCause;
-    const auto cause_of = [](std::uint32_t flags) {
-        std::uint32_t csr = flags | 3U;  // the slow oscillator is on
-        const ResetCause cause = stm32f4::take_reset_cause(ResetCauseModel{&csr});
-        EXPECT_EQ(csr, 3U) << "flags are removed";
-        EXPECT_EQ(stm32f4::take_reset_cause(ResetCauseModel{&csr}), ResetCause::unknown);
-        return cause;
-    };
-    constexpr std::uint32_t kPin = 1U << 26U;  // pulled by every reset
-    EXPECT_EQ(cause_of(0), ResetCause::unknown);
-    EXPECT_EQ(cause_of(kPin), ResetCause::pin);
-    EXPECT_EQ(cause_of(kPin | 1U << 25U | 1U << 27U), ResetCause::power);
-    EXPECT_EQ(cause_of(kPin | 1U << 25U), ResetCause::power);
-    EXPECT_EQ(cause_of(kPin | 1U << 28U), ResetCause::software);
-    EXPECT_EQ(cause_of(kPin | 1U << 29U), ResetCause::independent_watchdog);
-    EXPECT_EQ(cause_of(kPin | 1U << 30U), ResetCause::other);
-    EXPECT_EQ(cause_of(kPin | 1U << 31U), ResetCause::other);
-    // At power-on a watchdog cannot have done anything yet.
-    EXPECT_EQ(cause_of(kPin | 1U << 29U | 1U << 27U), ResetCause::power);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The interrupt-fed UART drivers against models of their hardware. The models are written from the manuals (ARM DDI
-// 0479, 4.3; ST RM0090, 30), not from the drivers, and lose bytes where the hardware would.
+// 0479, 4.3; ST RM0090, 30; ST RM0433, 48), not from the drivers, and lose bytes where the hardware would.
 #include <deque>
 #include <string>
 #include <vector>
@@ -10,6 +10,8 @@
 #include "core/base/random.hpp"
 #include "hal/cmsdk/cmsdk_uart.hpp"
 #include "hal/stm32f4/usart.hpp"
+#include "hal/stm32h7/usart.hpp"
+#include "tests/unit/hal/uart_models.hpp"
 
 namespace jink::hal {
 namespace {
@@ -25,170 +27,8 @@ Bytes random_bytes(Random& random, std::size_t count)
     return bytes;
 }
 
-/// The CMSDK APB UART: one byte of buffer each way.
-struct CmsdkModel {
-    std::uint32_t state = 0, control = 0, interrupts = 0, divider = 0;
-    std::uint8_t received = 0;
-    std::deque<std::byte> shifting;  ///< one byte at most
-    Bytes line;                      ///< sent bytes
-    bool woken = false;
-    bool free_running = false;  ///< a byte is sent at each read of the state
-
-    std::uint32_t read(std::uint32_t offset)
-    {
-        switch (offset) {
-        case 0x00: state &= ~2U; return received;
-        case 0x04:
-            if (free_running) {
-                shift_out();
-            }
-            return state;
-        case 0x08: return control;
-        case 0x0C: return interrupts | overrun_interrupt();
-        case 0x10: return divider;
-        default: ADD_FAILURE() << "no register at " << offset; return 0;
-        }
-    }
-    void write(std::uint32_t offset, std::uint32_t value)
-    {
-        switch (offset) {
-        case 0x00:
-            if ((state & 1U) != 0) {
-                state |= 4U;  // transmit overrun: the byte before is overwritten
-                shifting.clear();
-            }
-            shifting.push_back(static_cast<std::byte>(value));
-            state |= 1U;
-            break;
-        case 0x04: state &= ~(value & 0xCU); break;
-        case 0x08: control = value & 0x7F; break;
-        case 0x0C:
-            interrupts &= ~value;
-            state &= ~(value & 0xCU);
-            break;
-        case 0x10: divider = value & 0xFFFFF; break;
-        default: ADD_FAILURE() << "no register at " << offset;
-        }
-    }
-    [[nodiscard]] std::uint32_t overrun_interrupt() const { return state & (control >> 2U) & 0xCU; }
-    void arrive(std::byte byte)
-    {
-        if ((control & 2U) == 0) {
-            return;
-        }
-        state |= (state & 2U) != 0 ? 8U : 0U;
-        received = std::to_integer<std::uint8_t>(byte);
-        state |= 2U;
-        interrupts |= (control & 8U) != 0 ? 2U : 0U;
-    }
-    void shift_out()
-    {
-        if (!shifting.empty()) {
-            line.push_back(shifting.front());
-            shifting.clear();
-            state &= ~1U;
-            interrupts |= (control & 4U) != 0 ? 1U : 0U;
-        }
-    }
-};
-
-/// A USART of the STM32F4: a shift register and one byte behind it, each way.
-struct UsartModel {
-    std::uint32_t control1 = 0, divider = 0;
-    bool rxne = false, ore = false, line_error = false, read_status = false;
-    std::uint8_t received = 0;
-    std::deque<std::byte> to_shift;  ///< one byte behind the shift register
-    std::deque<std::byte> shifting;
-    Bytes line;
-    bool woken = false;
-    bool free_running = false;  ///< a byte is sent at each read of the status
-
-    std::uint32_t read(std::uint32_t offset)
-    {
-        switch (offset) {
-        case 0x00:
-            if (free_running) {
-                shift_out();
-            }
-            read_status = true;
-            return (rxne ? 1U << 5U : 0U) | (ore ? 1U << 3U : 0U) | (line_error ? 2U : 0U) |
-                   (to_shift.empty() ? 1U << 7U : 0U);
-        case 0x04: {
-            rxne = false;
-            if (read_status) {
-                ore = line_error = false;
-            }
-            return received;
-        }
-        case 0x0C: return control1;
-        default: ADD_FAILURE() << "not read: " << offset; return 0;
-        }
-    }
-    void write(std::uint32_t offset, std::uint32_t value)
-    {
-        switch (offset) {
-        case 0x04:
-            if (!to_shift.empty()) {
-                to_shift.clear();  // overwritten
-            }
-            to_shift.push_back(static_cast<std::byte>(value));
-            feed_shifter();
-            break;
-        case 0x08: divider = value; break;
-        case 0x0C: control1 = value; break;
-        case 0x10:
-        case 0x14: EXPECT_EQ(value, 0U); break;
-        default: ADD_FAILURE() << "not written: " << offset;
-        }
-    }
-    void feed_shifter()
-    {
-        if (shifting.empty() && !to_shift.empty()) {
-            shifting.push_back(to_shift.front());
-            to_shift.clear();
-        }
-    }
-    void arrive(std::byte byte, bool damaged = false)
-    {
-        if ((control1 & 4U) == 0) {
-            return;
-        }
-        if (rxne) {
-            ore = true;  // the new byte is lost, the old one stays
-            return;
-        }
-        received = std::to_integer<std::uint8_t>(byte);
-        rxne = true;
-        line_error = damaged;
-        read_status = false;
-    }
-    void shift_out()
-    {
-        if (!shifting.empty()) {
-            line.push_back(shifting.front());
-            shifting.clear();
-        }
-        feed_shifter();
-    }
-    [[nodiscard]] bool interrupt() const
-    {
-        return ((control1 & (1U << 5U)) != 0 && (rxne || ore)) || ((control1 & (1U << 7U)) != 0 && to_shift.empty());
-    }
-};
-
-template <class Model>
-struct By {
-    Model* model;
-    [[nodiscard]] std::uint32_t read(std::uint32_t offset) const { return model->read(offset); }
-    void write(std::uint32_t offset, std::uint32_t value) const { model->write(offset, value); }
-};
-template <class Model>
-struct Waking {
-    Model* model;
-    void operator()() const { model->woken = true; }
-};
-
 struct CmsdkCase {
+    static constexpr std::size_t kHeld = 1;  ///< received bytes that wait for the handler
     using Model = CmsdkModel;
     using Driver = CmsdkUart<By<Model>, Waking<Model>>;
     static constexpr std::uint32_t kClock = 25'000'000;
@@ -206,10 +46,12 @@ struct CmsdkCase {
         }
     }
 };
-struct UsartCase {
-    using Model = UsartModel;
-    using Driver = stm32f4::Usart<By<Model>, Waking<Model>>;
-    static constexpr std::uint32_t kClock = 84'000'000;
+template <class OfModel, class OfDriver, std::size_t Held, std::uint32_t Clock>
+struct StmCase {
+    static constexpr std::size_t kHeld = Held;
+    using Model = OfModel;
+    using Driver = OfDriver;
+    static constexpr std::uint32_t kClock = Clock;
     static void serve(Model& m, Driver& d)
     {
         for (int i = 0; i < 3 && (m.interrupt() || m.woken); ++i) {
@@ -218,6 +60,9 @@ struct UsartCase {
         }
     }
 };
+using UsartCase = StmCase<UsartModel, stm32f4::Usart<By<UsartModel>, Waking<UsartModel>>, 1, 84'000'000>;
+using FifoUsartCase =
+    StmCase<FifoUsartModel, stm32h7::Usart<By<FifoUsartModel>, Waking<FifoUsartModel>>, 16, 100'000'000>;
 
 template <class Case>
 class UartDriver : public testing::Test {
@@ -227,7 +72,7 @@ protected:
     void start() { ASSERT_TRUE(driver.start(Case::kClock, 921600)); }
     void serve() { Case::serve(model, driver); }
 };
-using Cases = testing::Types<CmsdkCase, UsartCase>;
+using Cases = testing::Types<CmsdkCase, UsartCase, FifoUsartCase>;
 TYPED_TEST_SUITE(UartDriver, Cases);
 
 TYPED_TEST(UartDriver, TakesRatesItCanMakeAndRefusesOthers)
@@ -285,13 +130,15 @@ TYPED_TEST(UartDriver, BytesThatComeFasterThanTheHandlerAreCounted)
 {
     this->start();
     for (int i = 0; i < 100; ++i) {
-        this->model.arrive(std::byte{1});
+        for (std::size_t k = 0; k < TypeParam::kHeld; ++k) {
+            this->model.arrive(std::byte{1});
+        }
         this->model.arrive(std::byte{2});  // before the handler could run
         this->serve();
     }
     EXPECT_EQ(this->driver.health().overruns, 100U);
-    std::array<std::byte, 512> got{};
-    EXPECT_EQ(this->driver.read(got), 100U);
+    std::array<std::byte, 4096> got{};
+    EXPECT_EQ(this->driver.read(got), 100U * TypeParam::kHeld);
 }
 
 TYPED_TEST(UartDriver, BytesThatFindTheRingFullAreCounted)
@@ -326,7 +173,8 @@ TYPED_TEST(UartDriver, LastWordsAreWrittenByWaiting)
     Random random(3);
     const Bytes words = random_bytes(random, 200);
     this->driver.write_waiting(words, 10);
-    for (int i = 0; i < 4; ++i) {
+    EXPECT_GE(this->model.line.size() + TypeParam::Driver::kHardwareBytes, words.size()) << "the rest is in hardware";
+    for (std::size_t i = 0; i < TypeParam::Driver::kHardwareBytes; ++i) {
         this->model.shift_out();
     }
     EXPECT_EQ(this->model.line, words);
@@ -339,14 +187,55 @@ TYPED_TEST(UartDriver, LastWordsToALineThatIsStuckEnd)
     EXPECT_LE(this->model.line.size(), 2U);
 }
 
+template <class Case>
+void damage_one_byte()
+{
+    typename Case::Model model;
+    typename Case::Driver driver{By<typename Case::Model>{&model}, Waking<typename Case::Model>{&model}};
+    ASSERT_TRUE(driver.start(Case::kClock, 921600));
+    model.arrive(std::byte{0x55}, true);
+    Case::serve(model, driver);
+    model.arrive(std::byte{0x56});
+    Case::serve(model, driver);
+    EXPECT_EQ(driver.health().line_errors, 1U);
+    std::array<std::byte, 4> got{};
+    EXPECT_EQ(driver.read(got), 2U);
+    EXPECT_EQ(driver.health().overruns, 0U);
+}
+
 TEST(Usart, DamagedBytesAreCountedAndHandedOn)
 {
-    UsartModel model;
-    UsartCase::Driver driver{By<UsartModel>{&model}, Waking<UsartModel>{&model}};
-    ASSERT_TRUE(driver.start(UsartCase::kClock, 921600));
-    model.arrive(std::byte{0x55}, true);
-    UsartCase::serve(model, driver);
-    EXPECT_EQ(driver.health().line_errors, 1U);
+    damage_one_byte<UsartCase>();
+    damage_one_byte<FifoUsartCase>();
+}
+
+TEST(FifoUsart, AnErrorBelongsToItsByteAlone)
+{
+    FifoUsartModel model;
+    FifoUsartCase::Driver driver{By<FifoUsartModel>{&model}, Waking<FifoUsartModel>{&model}};
+    ASSERT_TRUE(driver.start(FifoUsartCase::kClock, 921600));
+    for (int i = 0; i < 16; ++i) {
+        model.arrive(static_cast<std::byte>(i), i % 4 == 0);
+    }
+    FifoUsartCase::serve(model, driver);
+    EXPECT_EQ(driver.health().line_errors, 4U);
+    std::array<std::byte, 32> got{};
+    EXPECT_EQ(driver.read(got), 16U);
+    EXPECT_EQ(got[15], std::byte{15});
+}
+
+TEST(FifoUsart, AnOverrunThatIsFoundAloneIsCountedAndEnds)
+{
+    FifoUsartModel model;
+    FifoUsartCase::Driver driver{By<FifoUsartModel>{&model}, Waking<FifoUsartModel>{&model}};
+    ASSERT_TRUE(driver.start(FifoUsartCase::kClock, 921600));
+    model.overrun = true;  // the byte before it was read in the meantime
+    ASSERT_TRUE(model.interrupt());
+    FifoUsartCase::serve(model, driver);
+    EXPECT_EQ(driver.health().overruns, 1U);
+    EXPECT_FALSE(model.interrupt());
+    model.arrive(std::byte{1});
+    FifoUsartCase::serve(model, driver);
     std::array<std::byte, 4> got{};
     EXPECT_EQ(driver.read(got), 1U);
 }

@@ -4,16 +4,18 @@
 #include "hal/register_block.hpp"
 #include "hal/watchdog.hpp"
 
-namespace jink::hal::stm32f4 {
+namespace jink::hal::stm32 {
 
-/// The independent watchdog (ST RM0090, 21): runs on an oscillator of its own, 17 to 47 kHz, so that its time-out is
-/// known to a factor of 1.5 only. Once started only a reset stops it.
+/// The independent watchdog of the STM32F4 and H7 (ST RM0090, 21; RM0433, 45: the H7's window stays open). It runs on
+/// an oscillator of its own: 17 to 47 kHz on the F4 (ST DS8626), so that its time-out is known to a factor of 1.5 only;
+/// the H7's is within a tenth of 32 kHz (ST DS12110). Once started only a reset stops it.
 template <RegisterBlock Registers>
 class IndependentWatchdog final : public Watchdog {
 public:
     explicit IndependentWatchdog(Registers registers) noexcept : registers_(registers) {}
 
-    /// @param milliseconds  1..4095, at the oscillator's nominal 32 kHz: the real time is between 0.68 and 1.9 of it
+    /// @param milliseconds  1..4095, at the oscillator's nominal 32 kHz: the real time is between 0.68 and 1.9 of it on
+    ///                      the F4, between 0.9 and 1.1 on the H7
     void start(std::uint32_t milliseconds) noexcept
     {
         registers_.write(kKey, kStart);
@@ -43,4 +45,4 @@ private:
     Registers registers_;
 };
 
-}  // namespace jink::hal::stm32f4
+}  // namespace jink::hal::stm32
