@@ -39,7 +39,8 @@ link::SystemState Telemetry::system_state(const StepReport& report, const Report
     return on_guard ? link::SystemState::active : link::SystemState::standby;
 }
 
-void Telemetry::take_commands(std::span<const link::CommandRequest> commands) noexcept
+void Telemetry::take_commands(std::span<const link::CommandRequest> commands, StepLog* log,
+                              const Parameters& parameters) noexcept
 {
     constexpr std::uint16_t kRequestMessage = 512;
     constexpr std::uint16_t kRequestCapabilities = 520;
@@ -60,6 +61,8 @@ void Telemetry::take_commands(std::span<const link::CommandRequest> commands) no
         } else if (request.command == kRequestCapabilities) {
             version = request.params[0] == 1.0F;
             result = version ? link::CommandResult::accepted : link::CommandResult::denied;
+        } else if (log != nullptr) {
+            result = log->take(request, parameters);
         }
         counts_.commands_refused += result == link::CommandResult::accepted ? 0U : 1U;
         link_.acknowledge(request, result);

@@ -5,7 +5,6 @@
 
 #include "firmware/app/can_bus.hpp"
 #include "firmware/app/param_keeper.hpp"
-#include "firmware/app/plan_memory.hpp"
 #include "firmware/app/work_rate.hpp"
 #include "firmware/cortex_m/flight.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
@@ -88,15 +87,8 @@ alignas(app::CanBus) __attribute__((section(".ccm"))) std::byte bus_memory[sizeo
 Can* can = nullptr;  ///< nullptr: no CAN
 
 /// Likewise; at the start of the core-coupled memory. An emulator has none, and as much behind the RAM.
-alignas(app::PlanMemory) __attribute__((section(".plan"))) std::byte plan_memory[sizeof(app::PlanMemory)];
-alignas(app::PlanMemory)
-    __attribute__((section(".plan_emulated"))) std::byte plan_memory_emulated[sizeof(app::PlanMemory)];
-
-app::PlanMemory& make_plan_memory(const hal::stm32f4::Clocks& clocks) noexcept
-{
-    const bool emulated = clocks.source == hal::stm32f4::ClockSource::emulator;
-    return *new (emulated ? plan_memory_emulated : plan_memory) app::PlanMemory;
-}
+__attribute__((section(".plan"))) firmware::ApartMemory apart_memory;
+__attribute__((section(".plan_emulated"))) firmware::ApartMemory apart_memory_emulated;
 
 /// Two neighbouring pins for a peripheral.
 struct PinPair {
@@ -254,7 +246,10 @@ extern "C" void hal::cortex_m::jink_main()
 
     static_cast<void>(usart().start(clocks.apb2, kBaud));
     settle_reset(cause);
+    firmware::ApartMemory& apart =
+        clocks.source == hal::stm32f4::ClockSource::emulator ? apart_memory_emulated : apart_memory;
     coprocessor.keep_last_words(last_words);
+    coprocessor.stream(*new (apart.log) flightlog::LogStream(kBaud));
     hal::cortex_m::let_faults_speak();
     hal::cortex_m::enable_interrupt(kUsart1Interrupt);
     if (bus != nullptr) {
@@ -263,7 +258,7 @@ extern "C" void hal::cortex_m::jink_main()
         }
     }
     keeper.start(coprocessor);
-    app::PlanMemory& plans = make_plan_memory(clocks);
+    app::PlanMemory& plans = *new (apart.plans) app::PlanMemory;
     hal::cortex_m::note_second_stack(plans.stack);
     static_cast<void>(coprocessor.plan_in_slices(plans.plan, kRate.work()));  // valid, as asserted above
     firmware::settle_reach_sets(coprocessor);
