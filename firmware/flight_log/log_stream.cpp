@@ -2,6 +2,8 @@
 #include "firmware/flight_log/log_stream.hpp"
 
 #include <algorithm>
+#include <cstring>
+#include <utility>
 
 #include "core/capacity.hpp"
 #include "firmware/app/text.hpp"
@@ -24,6 +26,12 @@ constexpr std::size_t kTracksAtOnce = (kMaxTracks + 15) / 16;  ///< all of them 
 constexpr std::uint32_t kAppCountersAt = 19;
 constexpr std::uint32_t kAvoidCountersAt = 23;
 constexpr std::uint32_t kStreamAt = 44;
+
+/// Of a topic that is streamed [bytes].
+constexpr std::size_t kMaxContent =
+    sizeof(std::uint64_t) + std::max(sizeof(app::Diagnostics), sizeof(avoid::Diagnostics));
+static_assert(kMaxContent >= sizeof(StepTopic) && kMaxContent >= sizeof(TrackTopic) &&
+              kMaxContent >= sizeof(DecisionTopic));
 
 std::uint64_t stamp_of(TimePoint now) { return static_cast<std::uint64_t>(now.us); }
 
@@ -48,7 +56,7 @@ void LogStream::begin(TimePoint now, std::span<const link::LogAck> acks) noexcep
     place_ = waiting_.next;
     ++sequence_;
     waiting_ = {0, now, now, {}};
-    if (Definitions::is_end(place_)) {
+    if (StreamHead::is_end(place_)) {
         phase_ = Phase::data;
     }
 }
@@ -84,7 +92,7 @@ void LogStream::start(const link::CommandRequest& request, const app::Parameters
     sequence_ = 0;
     place_ = {};
     waiting_ = {0, now_, now_, {}};
-    definitions_.begin(now_, parameters.values());
+    head_.begin(now_, parameters.values());
     generation_ = parameters.generation();
     tick_ = 0;
     next_track_ = kMaxTracks;
@@ -130,7 +138,7 @@ void LogStream::send_definitions(link::Link& link) noexcept
         return;
     }
     std::array<std::byte, link::kMaxLogPart> buffer;
-    const Definitions::Part part = definitions_.part(place_, buffer);
+    const StreamHead::Part part = head_.part(place_, buffer);
     if (queue(link, true, part.bytes, part.first_message)) {
         counts_.repeated += waiting_.tries > 0 ? 1U : 0U;
         ++waiting_.tries;
@@ -174,25 +182,27 @@ void LogStream::end(const app::LoggedStep& step, link::Link& link) noexcept
     }
 }
 
-template <class T>
-void LogStream::put(TopicId id, const T& topic, std::size_t spare) noexcept
+void LogStream::put_content(TopicId id, std::span<const std::byte> content, std::size_t spare) noexcept
 {
-    std::array<std::byte, ulog::kDataHeader + kBytesOf<T>> buffer;
+    std::array<std::byte, ulog::kDataHeader + kMaxContent> buffer;
     ulog::Composer message(buffer);
-    message.begin(ulog::Type::data).put(id).put_bytes(content_of(topic));
+    message.begin(ulog::Type::data).put(id).put_bytes(content);
     ring_.add(message.end(), now_, spare);
 }
 
 template <class T>
 void LogStream::put_counters(TopicId id, std::span<const Counter<T>> counters, const T& values) noexcept
 {
-    std::array<std::byte, ulog::kDataHeader + sizeof(std::uint64_t) + sizeof(T)> buffer;
-    ulog::Composer message(buffer);
-    message.begin(ulog::Type::data).put(id).put(stamp_of(now_));
+    static_assert(sizeof(std::uint64_t) + sizeof(T) <= kMaxContent);
+    std::array<std::byte, sizeof(std::uint64_t) + sizeof(T)> content;
+    const std::uint64_t stamp = stamp_of(now_);
+    std::memcpy(content.data(), &stamp, sizeof stamp);
+    std::size_t at = sizeof stamp;
     for (const Counter<T>& counter : counters) {
-        message.put(values.*counter.member);
+        std::memcpy(content.data() + at, &(values.*counter.member), sizeof(std::uint32_t));
+        at += sizeof(std::uint32_t);
     }
-    ring_.add(message.end(), now_, kSpare);
+    put_content(id, content, kSpare);
 }
 
 void LogStream::log_text(char level, std::string_view text) noexcept
@@ -288,20 +298,18 @@ void LogStream::log_parameters(const app::Parameters& parameters) noexcept
     if (parameters.generation() == generation_) {
         return;
     }
-    app::ParamValues& logged = definitions_.values();
+    app::ParamValues& logged = head_.values();
     for (std::size_t i = 0; i < logged.size(); ++i) {
         const float value = parameters.values()[i];
         if (value == logged[i]) {
             continue;
         }
-        std::array<std::byte, ulog::kMessageHeader + 32> buffer;
-        ulog::Composer message(buffer);
-        message.begin(ulog::Type::parameter);
-        put_parameter(i, value, message);
-        if (!ring_.add(message.end(), now_)) {
+        const float before = std::exchange(logged[i], value);
+        std::array<std::byte, StreamHead::kMaxParameter> buffer;
+        if (!ring_.add(head_.parameter(i, buffer), now_)) {
+            logged[i] = before;
             return;
         }
-        logged[i] = value;
     }
     generation_ = parameters.generation();
 }

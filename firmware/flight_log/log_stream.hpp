@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "firmware/app/step_log.hpp"
-#include "firmware/flight_log/definitions.hpp"
 #include "firmware/flight_log/message_ring.hpp"
+#include "firmware/flight_log/stream_head.hpp"
 #include "firmware/flight_log/topics.hpp"
 
 namespace jink::flightlog {
@@ -54,11 +54,11 @@ public:
     LogStream(const LogStream&) = delete;
     LogStream& operator=(const LogStream&) = delete;
 
-    void begin(TimePoint now, std::span<const link::LogAck> acks) noexcept override;
+    [[gnu::cold]] void begin(TimePoint now, std::span<const link::LogAck> acks) noexcept override;
     [[nodiscard, gnu::cold]] link::CommandResult take(const link::CommandRequest& request,
                                                       const app::Parameters& parameters) noexcept override;
-    void note_text(link::Severity severity, std::string_view text) noexcept override;
-    void end(const app::LoggedStep& step, link::Link& link) noexcept override;
+    [[gnu::cold]] void note_text(link::Severity severity, std::string_view text) noexcept override;
+    [[gnu::cold]] void end(const app::LoggedStep& step, link::Link& link) noexcept override;
 
     [[nodiscard]] bool is_on() const noexcept { return phase_ != Phase::off; }
     [[nodiscard]] const StreamCounts& counts() const noexcept { return counts_; }
@@ -72,7 +72,7 @@ private:
         int tries = 0;  ///< 0: not sent yet
         TimePoint since;
         TimePoint sent;
-        Definitions::Place next;
+        StreamHead::Place next;
     };
     /// Of the step before: a change is logged at once.
     struct Last {
@@ -85,24 +85,30 @@ private:
         friend bool operator==(const Last&, const Last&) = default;
     };
 
+    // All of them compiled for size: a step runs through few hundred bytes of them.
     [[gnu::cold]] void start(const link::CommandRequest& request, const app::Parameters& parameters) noexcept;
-    void stop() noexcept;
-    void earn() noexcept;
-    [[nodiscard]] bool is_hopeless() const noexcept;
-    [[nodiscard]] bool queue(link::Link& link, bool acknowledged, std::span<const std::byte> bytes,
-                             std::uint8_t first_message) noexcept;
+    [[gnu::cold]] void stop() noexcept;
+    [[gnu::cold]] void earn() noexcept;
+    [[nodiscard, gnu::cold]] bool is_hopeless() const noexcept;
+    [[nodiscard, gnu::cold]] bool queue(link::Link& link, bool acknowledged, std::span<const std::byte> bytes,
+                                        std::uint8_t first_message) noexcept;
     [[gnu::cold]] void send_definitions(link::Link& link) noexcept;
-    void send_data(link::Link& link) noexcept;
-    void log_step(const app::LoggedStep& step) noexcept;
+    [[gnu::cold]] void send_data(link::Link& link) noexcept;
+    [[gnu::cold]] void log_step(const app::LoggedStep& step) noexcept;
     [[gnu::cold]] void log_changes(const app::StepReport& report) noexcept;
-    void log_tracks(std::span<const world::Track> tracks) noexcept;
-    void log_counters(const app::LoggedStep& step) noexcept;
+    [[gnu::cold]] void log_tracks(std::span<const world::Track> tracks) noexcept;
+    [[gnu::cold]] void log_counters(const app::LoggedStep& step) noexcept;
     [[gnu::cold]] void log_parameters(const app::Parameters& parameters) noexcept;
     [[gnu::cold]] void log_text(char level, std::string_view text) noexcept;
     template <class T>
-    void put(TopicId id, const T& topic, std::size_t spare = 0) noexcept;
+    void put(TopicId id, const T& topic, std::size_t spare = 0) noexcept
+    {
+        put_content(id, content_of(topic), spare);
+    }
     template <class T>
     void put_counters(TopicId id, std::span<const Counter<T>> counters, const T& values) noexcept;
+    [[gnu::cold, gnu::noinline]] void put_content(TopicId id, std::span<const std::byte> content,
+                                                  std::size_t spare) noexcept;
 
     std::int64_t bytes_per_second_;
     std::int64_t earned_ = 0;  ///< bytes that may be sent, in millionths
@@ -113,8 +119,8 @@ private:
     std::uint16_t sequence_ = 0;
     TimePoint now_;
     TimePoint started_;
-    Definitions definitions_;
-    Definitions::Place place_;
+    StreamHead head_;
+    StreamHead::Place place_;
     Waiting waiting_;
     MessageRing ring_;
     StreamCounts counts_;

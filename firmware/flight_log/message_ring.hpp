@@ -18,13 +18,13 @@ public:
     static constexpr std::size_t kBytes = 2048;
 
     /// Adds all of `message` if `spare` bytes stay free behind it. @return false: dropped. O(message).
-    bool add(std::span<const std::byte> message, TimePoint now, std::size_t spare = 0) noexcept;
+    [[gnu::cold]] bool add(std::span<const std::byte> message, TimePoint now, std::size_t spare = 0) noexcept;
     /// Oldest bytes, without taking them out. @return as many as `into` has, if there are as many
-    [[nodiscard]] std::span<const std::byte> peek(std::span<std::byte> into) const noexcept;
+    [[nodiscard, gnu::cold]] std::span<const std::byte> peek(std::span<std::byte> into) const noexcept;
     /// Where the first message begins among the oldest `n` bytes; link::kNoMessageBegins: nowhere.
-    [[nodiscard]] std::uint8_t first_message(std::size_t n) const noexcept;
+    [[nodiscard, gnu::cold]] std::uint8_t first_message(std::size_t n) const noexcept;
     /// Takes the oldest `n` bytes out, n <= size(). O(messages in them).
-    void remove(std::size_t n) noexcept;
+    [[gnu::cold]] void remove(std::size_t n) noexcept;
     /// Empty, with the counters as they are.
     void clear() noexcept;
 
@@ -34,7 +34,7 @@ public:
     [[nodiscard]] std::uint32_t peak() const noexcept { return peak_; }
 
 private:
-    void put(std::span<const std::byte> bytes) noexcept;
+    [[gnu::cold, gnu::noinline]] void put(std::span<const std::byte> bytes) noexcept;
     [[nodiscard]] std::byte at(std::size_t i) const noexcept { return bytes_[(begin_ + i) % kBytes]; }
 
     std::array<std::byte, kBytes> bytes_{};

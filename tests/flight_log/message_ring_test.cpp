@@ -8,16 +8,16 @@
 #include <sstream>
 #include <vector>
 
-#include "firmware/flight_log/definitions.hpp"
 #include "firmware/flight_log/message_ring.hpp"
+#include "firmware/flight_log/stream_head.hpp"
 #include "firmware/linux/flight_log/topics.hpp"
 #include "firmware/linux/flight_log/ulog_reader.hpp"
 
 namespace {
 
 using namespace jink;
-using flightlog::Definitions;
 using flightlog::MessageRing;
+using flightlog::StreamHead;
 using Bytes = std::vector<std::byte>;
 
 Bytes message_of(std::size_t content, std::mt19937_64& random)
@@ -97,45 +97,45 @@ TEST(MessageRing, IsAListOfWholeMessages)
     }
 }
 
-std::string all_of(const Definitions& definitions, std::size_t largest, std::uint64_t seed)
+std::string all_of(const StreamHead& head, std::size_t largest, std::uint64_t seed)
 {
     std::mt19937_64 random(seed);
     std::string out;
-    for (Definitions::Place place; !Definitions::is_end(place);) {
+    for (StreamHead::Place place; !StreamHead::is_end(place);) {
         Bytes buffer(seed == 0 ? largest : 1 + random() % largest);
-        const Definitions::Part part = definitions.part(place, buffer);
+        const StreamHead::Part part = head.part(place, buffer);
         EXPECT_FALSE(part.bytes.empty());
         EXPECT_EQ(Bytes(part.bytes.begin(), part.bytes.end()), [&] {
             Bytes again(buffer.size());
-            const auto once_more = definitions.part(place, again).bytes;
+            const auto once_more = head.part(place, again).bytes;
             return Bytes(once_more.begin(), once_more.end());
         }()) << "a part that is repeated";
-        EXPECT_TRUE(part.bytes.size() == buffer.size() || Definitions::is_end(part.next));
+        EXPECT_TRUE(part.bytes.size() == buffer.size() || StreamHead::is_end(part.next));
         out.append(reinterpret_cast<const char*>(part.bytes.data()), part.bytes.size());
         place = part.next;
     }
     return out;
 }
 
-TEST(StreamDefinitions, AreTheSameInPartsOfAnySize)
+TEST(StreamHead, AreTheSameInPartsOfAnySize)
 {
-    Definitions definitions;
-    definitions.begin({77}, app::Parameters().values());
-    const std::string whole = all_of(definitions, 100'000, 0);
+    StreamHead head;
+    head.begin({77}, app::Parameters().values());
+    const std::string whole = all_of(head, 100'000, 0);
     EXPECT_GT(whole.size(), 4'000U);
     EXPECT_LT(whole.size(), 8'000U);
     for (std::uint64_t seed = 1; seed <= 50; ++seed) {
-        ASSERT_EQ(all_of(definitions, 249, seed), whole) << seed;
+        ASSERT_EQ(all_of(head, 249, seed), whole) << seed;
     }
-    EXPECT_EQ(all_of(definitions, 249, 0), whole);
-    EXPECT_EQ(all_of(definitions, 1, 0), whole);
+    EXPECT_EQ(all_of(head, 249, 0), whole);
+    EXPECT_EQ(all_of(head, 1, 0), whole);
 }
 
-TEST(StreamDefinitions, HaveTheFormatsOfJinkd)
+TEST(StreamHead, HaveTheFormatsOfJinkd)
 {
-    Definitions definitions;
-    definitions.begin({77}, app::Parameters().values());
-    std::istringstream in(all_of(definitions, 249, 0));
+    StreamHead head;
+    head.begin({77}, app::Parameters().values());
+    std::istringstream in(all_of(head, 249, 0));
     ulog::Reader reader(in);
     while (reader.next()) {
     }

@@ -250,11 +250,27 @@ private:
     void send_mode(std::uint32_t custom_mode) noexcept;
     [[nodiscard]] bool takes_guided_points() const noexcept;
     void send_guided_point(const Vec3& velocity, TimePoint now) noexcept;
+    /// A structure of a message, whose kind the code below does not know: once for all messages.
+    struct Unsent {
+        const std::byte* object;
+        Layout layout;
+        bool is_heartbeat;
+    };
     template <Message M>
-    [[nodiscard]] std::size_t encode_as(const M& message, std::uint8_t sequence, std::span<std::byte> out) noexcept;
+    [[nodiscard]] static Unsent unsent(const M& message) noexcept
+    {
+        return {
+            reinterpret_cast<const std::byte*>(&message), {M::kInfo, M::kFields}, M::kInfo.id == Heartbeat::kInfo.id};
+    }
+    [[nodiscard]] std::size_t encode_as(const Unsent& message, std::uint8_t sequence,
+                                        std::span<std::byte> out) noexcept;
+    bool send_unsent(const Unsent& message, Perishable kind) noexcept;
     void ask_for_streams(TimePoint now) noexcept;
     template <Message M>
-    bool send(const M& message, Perishable kind = Perishable::no) noexcept;
+    bool send(const M& message, Perishable kind = Perishable::no) noexcept
+    {
+        return send_unsent(unsent(message), kind);
+    }
     void take_back(Perishable kind) noexcept;
 
     EndpointOptions options_;

@@ -38,20 +38,18 @@ void Endpoint::take_back(Perishable kind) noexcept
     }
 }
 
-template <Message M>
-std::size_t Endpoint::encode_as(const M& message, std::uint8_t sequence, std::span<std::byte> out) noexcept
+std::size_t Endpoint::encode_as(const Unsent& message, std::uint8_t sequence, std::span<std::byte> out) noexcept
 {
     // System id 0 is invalid: until the autopilot is known, its usual id is used.
     const Header header{system_ != 0 ? system_ : kUsualSystem, options_.component_id, sequence};
-    return signing_ != nullptr && signing_->has_key() ? encode_signed(message, header, *signing_, out)
-                                                      : encode(message, header, out);
+    Signing* const signing = signing_ != nullptr && signing_->has_key() ? signing_ : nullptr;
+    return encode_v2(message.object, message.layout, header, signing, out);
 }
 
 /// @return false: not queued
-template <Message M>
-bool Endpoint::send(const M& message, Perishable kind) noexcept
+bool Endpoint::send_unsent(const Unsent& message, Perishable kind) noexcept
 {
-    if (system_ == 0 && M::kInfo.id != Heartbeat::kInfo.id) {  // no receiver is known yet
+    if (system_ == 0 && !message.is_heartbeat) {  // no receiver is known yet
         return false;
     }
     take_back(kind);
@@ -358,7 +356,7 @@ std::size_t Endpoint::compose_last_words(std::span<std::byte> out, bool hold, st
     std::size_t size = 0;
     bool fits = true;
     const auto add = [&](const auto& message) {
-        const std::size_t n = encode_as(message, number++, out.subspan(size));
+        const std::size_t n = encode_as(unsent(message), number++, out.subspan(size));
         fits = fits && n > 0;
         size += n;
     };

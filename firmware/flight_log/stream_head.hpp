@@ -8,13 +8,14 @@
 #include "core/base/time.hpp"
 #include "firmware/app/parameters.hpp"
 #include "firmware/flight_log/topics.hpp"
+#include "firmware/link/messages.hpp"
 
 namespace jink::flightlog {
 
 /// What a board's log begins with: file header, flags, information, formats, parameters, subscriptions; about 6 kB. It
 /// is composed in parts wherever a part is asked for, and only the values of the parameters are kept for it. The same
 /// part has the same bytes whenever it is composed.
-class Definitions {
+class StreamHead {
 public:
     /// A byte of the definitions.
     struct Place {
@@ -41,23 +42,18 @@ public:
     /// Values as the log has them: those of the beginning, and the changes since then that were logged.
     [[nodiscard]] app::ParamValues& values() noexcept { return values_; }
 
+    /// The message of a parameter: size of its name and type, both, and the value.
+    static constexpr std::size_t kMaxParameter = ulog::kMessageHeader + 1 + 8 + link::kParamNameLength + 4;
+    [[nodiscard, gnu::cold]] std::span<const std::byte> parameter(std::size_t index,
+                                                                  std::span<std::byte> into) const noexcept;
+
 private:
     class Window;
-    void put_message(std::size_t index, Window& into) const noexcept;
-    void put_content(std::size_t index, Window& into) const noexcept;
+    [[gnu::cold]] void put_message(std::size_t index, Window& into) const noexcept;
+    [[gnu::cold]] void put_content(std::size_t index, Window& into) const noexcept;
 
     TimePoint started_;
     app::ParamValues values_{};
 };
-
-/// Composes a parameter's type, name and value, as ULog has them.
-template <class Into>
-void put_parameter(std::size_t index, float value, Into& into) noexcept
-{
-    const app::ParamInfo& info = app::param_table()[index];
-    const std::string_view type = info.integer ? "int32_t " : "float ";
-    into.put(static_cast<std::uint8_t>(type.size() + info.name.size())).put_text(type).put_text(info.name);
-    info.integer ? into.put(static_cast<std::int32_t>(value)) : into.put(value);
-}
 
 }  // namespace jink::flightlog

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "firmware/flight_log/definitions.hpp"
+#include "firmware/flight_log/stream_head.hpp"
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 #include "firmware/app/text.hpp"
 #include "firmware/flight_log/ulog.hpp"
@@ -55,11 +56,11 @@ constexpr ulog::Type type_of(std::size_t index) noexcept
 }  // namespace
 
 /// Takes the bytes behind the first `skip` of what is put, as far as they fit, and counts all of them.
-class Definitions::Window {
+class StreamHead::Window {
 public:
     Window(std::size_t skip, std::span<std::byte> into) noexcept : skip_(skip), into_(into) {}
 
-    Window& put_bytes(std::span<const std::byte> bytes) noexcept
+    [[gnu::cold, gnu::noinline]] Window& put_bytes(std::span<const std::byte> bytes) noexcept
     {
         const std::size_t before = count_;
         count_ += bytes.size();
@@ -92,7 +93,7 @@ private:
 namespace {
 
 template <class Into, class T>
-void put_counter_fields(std::span<const Counter<T>> counters, Into& into) noexcept
+[[gnu::cold]] void put_counter_fields(std::span<const Counter<T>> counters, Into& into) noexcept
 {
     for (const Counter<T>& counter : counters) {
         into.put_text("uint32_t ").put_text(counter.name).put_text(";");
@@ -100,7 +101,7 @@ void put_counter_fields(std::span<const Counter<T>> counters, Into& into) noexce
 }
 
 template <class Into>
-void put_format(const Described& topic, Into& into) noexcept
+[[gnu::cold]] void put_format(const Described& topic, Into& into) noexcept
 {
     into.put_text(topic.format);
     if (topic.id == TopicId::app_counters) {
@@ -111,7 +112,18 @@ void put_format(const Described& topic, Into& into) noexcept
 }
 
 template <class Into>
-void put_info(const Info& info, Into& into) noexcept
+[[gnu::cold]] void put_parameter(std::size_t index, float value, Into& into) noexcept
+{
+    const app::ParamInfo& info = app::param_table()[index];
+    const std::string_view type = info.integer ? "int32_t " : "float ";
+    into.put(static_cast<std::uint8_t>(type.size() + info.name.size())).put_text(type).put_text(info.name);
+    // A whole number is one: parameters are checked.
+    into.put(info.integer ? static_cast<std::uint32_t>(static_cast<std::int32_t>(value))
+                          : std::bit_cast<std::uint32_t>(value));
+}
+
+template <class Into>
+[[gnu::cold]] void put_info(const Info& info, Into& into) noexcept
 {
     app::Text key;
     key << "char[" << static_cast<std::uint32_t>(info.text.size()) << "] " << info.name;
@@ -120,7 +132,7 @@ void put_info(const Info& info, Into& into) noexcept
 
 }  // namespace
 
-void Definitions::put_content(std::size_t index, Window& into) const noexcept
+void StreamHead::put_content(std::size_t index, Window& into) const noexcept
 {
     if (index < kFirstInfo) {
         into.put(std::array<std::uint8_t, ulog::kFlagBytes>{});
@@ -136,7 +148,7 @@ void Definitions::put_content(std::size_t index, Window& into) const noexcept
     }
 }
 
-void Definitions::put_message(std::size_t index, Window& into) const noexcept
+void StreamHead::put_message(std::size_t index, Window& into) const noexcept
 {
     if (index == kHeader) {
         into.put(ulog::kMagicAndVersion).put(static_cast<std::uint64_t>(started_.us));
@@ -148,7 +160,14 @@ void Definitions::put_message(std::size_t index, Window& into) const noexcept
     put_content(index, into);
 }
 
-Definitions::Part Definitions::part(Place from, std::span<std::byte> into) const noexcept
+std::span<const std::byte> StreamHead::parameter(std::size_t index, std::span<std::byte> into) const noexcept
+{
+    Window window(0, into);
+    put_message(kFirstParameter + index, window);
+    return into.first(window.used());
+}
+
+StreamHead::Part StreamHead::part(Place from, std::span<std::byte> into) const noexcept
 {
     static_assert(kFlags + 1 == kFirstInfo);
     Part part{{}, link::kNoMessageBegins, from};
@@ -169,6 +188,6 @@ Definitions::Part Definitions::part(Place from, std::span<std::byte> into) const
     return part;
 }
 
-bool Definitions::is_end(Place place) noexcept { return place.message >= kMessages; }
+bool StreamHead::is_end(Place place) noexcept { return place.message >= kMessages; }
 
 }  // namespace jink::flightlog
