@@ -73,6 +73,9 @@ void Coprocessor::heed(Jump jump) noexcept
 void Coprocessor::take_inbox(TimePoint now) noexcept
 {
     const link::Inbox& inbox = intake_.inbox();
+    if (log_ != nullptr) {
+        log_->begin(now, inbox.log_acks);
+    }
     const Configuration& c = params_.configuration();
     if (autopilot_.take(inbox)) {
         control_.note_restart(outbox_);
@@ -94,7 +97,7 @@ void Coprocessor::take_inbox(TimePoint now) noexcept
     params_.take(inbox.params, link_, outbox_);
     apply_configuration();
     params_.continue_list(link_);
-    telemetry_.take_commands(inbox.commands);
+    telemetry_.take_commands(inbox.commands, log_, params_.parameters());
     picture_.take_constraints(inbox, own_, link_, now);
     intake_.clear();
 }
@@ -146,7 +149,7 @@ avoid::Guidance Coprocessor::decide(TimePoint now, const vehicle::VehicleState& 
                             c);
 }
 
-void Coprocessor::decide_and_control(TimePoint now, StepReport& report) noexcept
+std::span<const world::Track> Coprocessor::decide_and_control(TimePoint now, StepReport& report) noexcept
 {
     const Configuration& c = params_.configuration();
     const bool fresh = own_.is_fresh(now, c.own_age);
@@ -166,14 +169,22 @@ void Coprocessor::decide_and_control(TimePoint now, StepReport& report) noexcept
     const Progress background = decision_.advance_background(report.work, c);
     diagnostics_.tables_checked += background == Progress::done ? 1U : 0U;
     telemetry_.note(event, report);
+    return tracks;
 }
 
-void Coprocessor::report_state(TimePoint now, StepReport& report) noexcept
+void Coprocessor::report_state(TimePoint now, std::span<const world::Track> tracks, StepReport& report) noexcept
 {
+    const bool is_line_free = intake_.is_port_open() && is_line_empty_;
     const Reported of{params_.configuration(), autopilot_, own_, picture_, decision_, control_, passive_,
                       intake_.was_bus_up()};
     report.state = Telemetry::system_state(report, of);
     telemetry_.report_to_autopilot(now, report, of, outbox_);
+    if (log_ != nullptr) {
+        report.bytes_out = last_written_;
+        log_->end({now, report, own_.measured(), tracks, params_.parameters(), diagnostics_, decision_.diagnostics(),
+                   is_line_free},
+                  link_);
+    }
     telemetry_.prepare_last_words(now, of);
     telemetry_.report_to_bus(now, report, of, outbox_);
     if (telemetry_.is_near_due(now, report, of)) {
@@ -202,9 +213,10 @@ StepReport Coprocessor::step(TimePoint now) noexcept
     picture_.place_constraints(link_.origin(), now);
     picture_.place_map(link_.origin(), own_, autopilot_.is_heard(), params_.configuration(), now);
     report.faults = find_faults(now, gap > kStall);
-    decide_and_control(now, report);
-    report_state(now, report);
-    report.bytes_out = outbox_.write();
+    const std::span<const world::Track> tracks = decide_and_control(now, report);
+    report_state(now, tracks, report);
+    report.bytes_out = last_written_ = outbox_.write();
+    is_line_empty_ = link_.pending().empty();
     if ((report.faults & (bit(Fault::not_finite) | bit(Fault::late))) == 0) {
         watchdog_.feed();
     }

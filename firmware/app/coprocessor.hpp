@@ -54,6 +54,12 @@ public:
     void note_cycles(std::uint32_t cycles) noexcept { telemetry_.note_cycles(cycles); }
     /// From here on every step prepares the texts of a fault handler, before it sends anything. They outlive this.
     void keep_last_words(hal::LastWords& words) noexcept { telemetry_.keep_last_words(words); }
+    /// From here on this log may be asked for over the link (LOGGING_START). It outlives this.
+    void stream(StepLog& log) noexcept
+    {
+        log_ = &log;
+        outbox_.log_to(log);
+    }
     /// From here on the points of the link and of the input's own port become obstacles. It outlives this, and takes
     /// nothing once this is gone.
     void use_clouds(Clouds& clouds) noexcept { picture_.use_clouds(clouds, link_); }
@@ -168,10 +174,11 @@ private:
     void heed(Jump jump) noexcept;
     void apply_configuration() noexcept;
     [[nodiscard]] std::uint16_t find_faults(TimePoint now, bool stalled) const noexcept;
-    void decide_and_control(TimePoint now, StepReport& report) noexcept;
+    /// @return tracks that were decided with
+    std::span<const world::Track> decide_and_control(TimePoint now, StepReport& report) noexcept;
     [[nodiscard]] avoid::Guidance decide(TimePoint now, const vehicle::VehicleState& own,
                                          std::span<const world::Track> tracks, StepReport& report) noexcept;
-    void report_state(TimePoint now, StepReport& report) noexcept;
+    void report_state(TimePoint now, std::span<const world::Track> tracks, StepReport& report) noexcept;
 
     link::Link& link_;
     hal::Watchdog& watchdog_;
@@ -187,6 +194,9 @@ private:
     Telemetry telemetry_;
     std::optional<TimePoint> last_step_;
     std::uint16_t last_faults_ = 0;
+    std::uint32_t last_written_ = 0;  ///< bytes
+    bool is_line_empty_ = true;       ///< the port has taken everything
+    StepLog* log_ = nullptr;
     bool passive_ = false;
 };
 

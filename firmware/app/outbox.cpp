@@ -9,6 +9,9 @@ void Outbox::say(link::Severity severity, std::string_view text) noexcept
     if (bus_ != nullptr) {
         bus_->send_text(severity, text);
     }
+    if (log_ != nullptr) {
+        log_->note_text(severity, text);
+    }
 }
 
 void Outbox::send_notices() noexcept

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "core/base/static_vector.hpp"
+#include "firmware/app/step_log.hpp"
 #include "firmware/app/step_report.hpp"
 #include "firmware/app/text.hpp"
 #include "firmware/link/link.hpp"
@@ -24,6 +25,8 @@ public:
     {
     }
 
+    /// From now on the log has every text. It outlives this.
+    void log_to(StepLog& log) noexcept { log_ = &log; }
     /// Sends a text on the link, and on the bus where there is one.
     void say(link::Severity severity, std::string_view text) noexcept;
     /// Keeps a text for send_notices(). @return false: kMaxNotices wait already
@@ -46,6 +49,7 @@ private:
     link::Link& link_;
     hal::SerialPort& port_;
     link::SensorBus* bus_;
+    StepLog* log_ = nullptr;
     StaticVector<Notice, kMaxNotices> notices_;
 };
 

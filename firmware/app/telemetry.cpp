@@ -39,23 +39,36 @@ link::SystemState Telemetry::system_state(const StepReport& report, const Report
     return on_guard ? link::SystemState::active : link::SystemState::standby;
 }
 
-void Telemetry::take_commands(std::span<const link::CommandRequest> commands) noexcept
+void Telemetry::take_commands(std::span<const link::CommandRequest> commands, StepLog* log,
+                              const Parameters& parameters) noexcept
 {
     constexpr std::uint16_t kRequestMessage = 512;
+    constexpr std::uint16_t kRequestCapabilities = 520;
     constexpr float kHeartbeat = 0.0F;
+    constexpr float kVersion = 148.0F;
     constexpr float kText = 253.0F;
     for (const link::CommandRequest& request : commands) {
         ++counts_.commands;
         link::CommandResult result = link::CommandResult::unsupported;
+        bool version = false;
         if (request.command == kRequestMessage) {
             const bool heartbeat = request.params[0] == kHeartbeat;
             const bool text = request.params[0] == kText && most_cycles_ > 0;
-            result = heartbeat || text ? link::CommandResult::accepted : link::CommandResult::denied;
+            version = request.params[0] == kVersion;
+            result = heartbeat || text || version ? link::CommandResult::accepted : link::CommandResult::denied;
             heartbeat_.is_sent = heartbeat_.is_sent && !heartbeat;
             cycles_asked_ = cycles_asked_ || text;
+        } else if (request.command == kRequestCapabilities) {
+            version = request.params[0] == 1.0F;
+            result = version ? link::CommandResult::accepted : link::CommandResult::denied;
+        } else if (log != nullptr) {
+            result = log->take(request, parameters);
         }
         counts_.commands_refused += result == link::CommandResult::accepted ? 0U : 1U;
         link_.acknowledge(request, result);
+        if (version) {
+            link_.send_version({JINK_VERSION_MAJOR, JINK_VERSION_MINOR, JINK_VERSION_PATCH});
+        }
     }
 }
 

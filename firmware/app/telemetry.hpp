@@ -10,6 +10,7 @@
 #include "firmware/app/diagnostics.hpp"
 #include "firmware/app/outbox.hpp"
 #include "firmware/app/picture.hpp"
+#include "firmware/app/step_log.hpp"
 #include "firmware/app/step_report.hpp"
 #include "hal/last_words.hpp"
 
@@ -42,8 +43,10 @@ public:
     /// What a step took, on boards that count [cycles].
     void note_cycles(std::uint32_t cycles) noexcept { most_cycles_ = std::max(most_cycles_, cycles); }
     /// Requests of messages: the HEARTBEAT is sent in this step, and with the next one a text of the longest step where
-    /// a text is asked for and steps are counted; others are refused.
-    void take_commands(std::span<const link::CommandRequest> commands) noexcept;
+    /// a text is asked for and steps are counted; the version is sent at once; others are refused.
+    /// The log takes its own commands. @param log  may be null
+    void take_commands(std::span<const link::CommandRequest> commands, StepLog* log,
+                       const Parameters& parameters) noexcept;
     /// What became of control in this step.
     void note(TakeoverEvent event, const StepReport& report) noexcept;
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "firmware/app/coprocessor.hpp"
+#include "firmware/app/plan_memory.hpp"
+#include "firmware/flight_log/log_stream.hpp"
 #include "hal/cortex_m/cortex_m.hpp"
 #include "hal/cortex_m/cycle_counter.hpp"
 #include "hal/cortex_m/periodic.hpp"
@@ -21,6 +23,12 @@ inline constexpr std::int64_t kPassiveWait = 1'000'000;
 
 /// Polls of a UART per byte of the last words: above 0.5 ms on every board, 40 bytes' time at 921600 baud.
 inline constexpr std::uint32_t kPatience = 20'000;
+
+/// Memory apart from the rest, which start-up does not clear: plans, whose stack lies at its start, and the flight log.
+struct ApartMemory {
+    alignas(app::PlanMemory) std::byte plans[sizeof(app::PlanMemory)];
+    alignas(flightlog::LogStream) std::byte log[sizeof(flightlog::LogStream)];
+};
 
 /// Report of a fault, in two lines of a STATUSTEXT.
 struct FaultStory {

@@ -113,6 +113,10 @@ public:
     virtual void acknowledge(const CommandRequest& request, CommandResult result) noexcept = 0;
     /// Reports the result of a part of a set of constraints to its sender.
     virtual void acknowledge(const ConstraintPart& part, ConstraintResult result) noexcept = 0;
+    /// Sends the version of the software, and what the protocol can ask of it.
+    virtual void send_version(const Version& version) noexcept = 0;
+    /// Queues one part of a log. @return false: no receiver is known yet, or the transmit buffer is full; counted
+    [[nodiscard]] virtual bool send_log(const LogPart& part) noexcept = 0;
     /// Requests the autopilot's external mode (GUIDED, OFFBOARD).
     virtual void request_external_mode() noexcept = 0;
     /// Requests a mode by its wire number, to restore the former mode.

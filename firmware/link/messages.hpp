@@ -10,6 +10,7 @@
 #include "core/base/vec3.hpp"
 #include "core/world/world.hpp"
 #include "firmware/link/constraint.hpp"
+#include "firmware/link/log_part.hpp"
 
 // Reports of a link to the application, free of any wire format: frames are ENU, units SI, stamps on the co-processor's
 // clock. Every number in here is finite; the link refuses and counts reports with non-finite values.
@@ -180,6 +181,7 @@ struct Inbox {
     StaticVector<CommandRequest, 8> commands;
     StaticVector<ConstraintPart, 4> constraints;
     StaticVector<ModeAnswer, 4> mode_answers;
+    StaticVector<LogAck, 4> log_acks;
 
     void clear() noexcept
     {
@@ -193,6 +195,7 @@ struct Inbox {
         commands.clear();
         constraints.clear();
         mode_answers.clear();
+        log_acks.clear();
     }
 };
 

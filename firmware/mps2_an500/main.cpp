@@ -2,7 +2,6 @@
 // jink on the MPS2 board with the AN500 image: Cortex-M7, 25 MHz, MAVLink on UART0.
 #include <new>
 
-#include "firmware/app/plan_memory.hpp"
 #include "firmware/app/work_rate.hpp"
 #include "firmware/cortex_m/flight.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
@@ -43,8 +42,7 @@ Uart& uart() noexcept
     return port;
 }
 
-/// At the start of a memory of its own, which start-up does not clear.
-alignas(app::PlanMemory) __attribute__((section(".plan"))) std::byte plan_memory[sizeof(app::PlanMemory)];
+__attribute__((section(".plan"))) firmware::ApartMemory apart;
 
 void start_timer() noexcept
 {
@@ -94,12 +92,13 @@ extern "C" void hal::cortex_m::jink_main()
     static_cast<void>(uart().start(kClockHz, kBaud));
     last_words.clear();
     coprocessor.keep_last_words(last_words);
+    coprocessor.stream(*new (apart.log) flightlog::LogStream(kBaud));
     hal::cortex_m::let_faults_speak();
     for (const unsigned irq : {kUartReceive, kUartTransmit, kUartOverrun}) {
         hal::cortex_m::enable_interrupt(irq);
     }
     hal::cortex_m::start_systick(kClockHz / 1000U);
-    app::PlanMemory& plans = *new (plan_memory) app::PlanMemory;
+    app::PlanMemory& plans = *new (apart.plans) app::PlanMemory;
     hal::cortex_m::note_second_stack(plans.stack);
     static_cast<void>(coprocessor.plan_in_slices(plans.plan, kRate.work()));  // valid, as asserted above
     firmware::settle_reach_sets(coprocessor);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <new>
+
 #include "firmware/app/param_keeper.hpp"
-#include "firmware/app/plan_memory.hpp"
 #include "firmware/app/work_rate.hpp"
 #include "firmware/cortex_m/flight.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
@@ -25,7 +26,7 @@
 //   start()                   clocks, pins, and the timer's clock; returns the hal::stm32::Clocks
 //   usart_clock(clocks)       of the USART [Hz]
 //   flash(patience)           hal::FlashRegion& of the parameters; patience is an ErasePatience
-//   plan_memory(clocks)       app::PlanMemory&, new, at the start of a memory
+//   apart_memory(clocks)      ApartMemory&, at the start of a memory
 //   last_words()              hal::LastWords& that a reset does not clear
 //   start_bus(clocks)         link::SensorBus* or nullptr; its text without one: kNoBus, empty for none
 //   listen_to_bus()           enables the interrupts of the bus
@@ -119,14 +120,16 @@ template <class Board>
 
     static_cast<void>(Board::usart().start(Board::usart_clock(clocks), kBaud));
     settle_reset<Board>(cause);
+    ApartMemory& apart = Board::apart_memory(clocks);
     coprocessor.keep_last_words(Board::last_words());
+    coprocessor.stream(*new (apart.log) flightlog::LogStream(kBaud));
     hal::cortex_m::let_faults_speak();
     hal::cortex_m::enable_interrupt(Board::kUsartInterrupt);
     if (bus != nullptr) {
         Board::listen_to_bus();
     }
     keeper.start(coprocessor);
-    app::PlanMemory& plans = Board::plan_memory(clocks);
+    app::PlanMemory& plans = *new (apart.plans) app::PlanMemory;
     hal::cortex_m::note_second_stack(plans.stack);
     static_cast<void>(coprocessor.plan_in_slices(plans.plan, kRate.work()));  // valid, as asserted above
     settle_reach_sets(coprocessor);

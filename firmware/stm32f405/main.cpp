@@ -49,9 +49,8 @@ alignas(app::CanBus) __attribute__((section(".ccm"))) std::byte bus_memory[sizeo
 Can* can = nullptr;  ///< nullptr: no CAN
 
 /// Likewise; at the start of the core-coupled memory. An emulator has none, and as much behind the RAM.
-alignas(app::PlanMemory) __attribute__((section(".plan"))) std::byte plan_memory_of_chip[sizeof(app::PlanMemory)];
-alignas(app::PlanMemory)
-    __attribute__((section(".plan_emulated"))) std::byte plan_memory_emulated[sizeof(app::PlanMemory)];
+__attribute__((section(".plan"))) firmware::ApartMemory apart_memory_of_chip;
+__attribute__((section(".plan_emulated"))) firmware::ApartMemory apart_memory_emulated;
 
 /// PB8 and PB9; without a transceiver PB8 reads as recessive.
 constexpr hal::stm32::PinPair kCanPins{kAhb1Enable, 1U << 1U, kApb1Enable, 1U << 25U, 8, 9, 8};
@@ -119,10 +118,10 @@ struct Board {
         static hal::stm32f4::Flash region(MappedRegisters{kFlash}, MappedRegisters{kStore}, kStoreSector, patience);
         return region;
     }
-    static app::PlanMemory& plan_memory(const hal::stm32::Clocks& clocks) noexcept
+    static firmware::ApartMemory& apart_memory(const hal::stm32::Clocks& clocks) noexcept
     {
         const bool emulated = clocks.source == hal::stm32::ClockSource::emulator;
-        return *new (emulated ? plan_memory_emulated : plan_memory_of_chip) app::PlanMemory;
+        return emulated ? apart_memory_emulated : apart_memory_of_chip;
     }
     /// A controller that takes part in a bus, or nullptr. The internal oscillator is off by up to 1 %, and CAN at 1
     /// Mbit/s tolerates a third of that: without the crystal the controller would only disturb the bus.

@@ -2,8 +2,6 @@
 // jink on an STM32H743ZI (Cortex-M7), wired as a Nucleo-H743ZI2: MAVLink on USART3, PD8 and PD9, which the board's
 // debugger carries to USB; its 8 MHz come from the debugger (ST UM2407). No CAN: there is no driver for FDCAN. No
 // emulator has this chip (docs/guides/porting.md).
-#include <new>
-
 #include "firmware/stm32/run_board.hpp"
 #include "hal/cortex_m/caches.hpp"
 #include "hal/cortex_m/memory_protection.hpp"
@@ -42,7 +40,7 @@ constexpr hal::stm32h7::ExternalClock kExternalClock = hal::stm32h7::ExternalClo
 constexpr hal::stm32::PinPair kUsartPins{kAhb4Enable, 1U << 3U, kApb1LowEnable, 1U << 18U, 8, 7, 9};
 
 /// At the start of the AXI SRAM. Start-up does not clear it.
-alignas(app::PlanMemory) __attribute__((section(".plan"))) std::byte plan_memory_of_chip[sizeof(app::PlanMemory)];
+__attribute__((section(".plan"))) firmware::ApartMemory apart_memory_of_chip;
 
 /// Protection and caches. Data and stack lie in the DTCM, which no cache covers; code, tables and plans are cached.
 /// There is no other bus master (no DMA), so nothing has to be kept coherent, except for the two sectors of flash that
@@ -109,9 +107,9 @@ struct Board {
                                           patience);
         return region;
     }
-    static app::PlanMemory& plan_memory(const hal::stm32::Clocks& /*clocks*/) noexcept
+    static firmware::ApartMemory& apart_memory(const hal::stm32::Clocks& /*clocks*/) noexcept
     {
-        return *new (plan_memory_of_chip) app::PlanMemory;
+        return apart_memory_of_chip;
     }
     static link::SensorBus* start_bus(const hal::stm32::Clocks& /*clocks*/) noexcept { return nullptr; }
     static void listen_to_bus() noexcept {}

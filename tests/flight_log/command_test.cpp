@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "tests/flight_log/recorded_flight.hpp"
+#include "tests/flight_log/stream_flight.hpp"
 #include "tests/host/scratch.hpp"
 #include "toolchain/sim/random_scenario.hpp"
 
@@ -51,6 +52,25 @@ TEST_F(LogCommand, SumsUpALog)
     EXPECT_TRUE(says("control announcing -> requesting: conflict with track")) << out;
     EXPECT_TRUE(says("end: complete")) << out;
     EXPECT_TRUE(says("avoid_counters.plans")) << out;
+}
+
+TEST_F(LogCommand, SumsUpALogOfABoardWhichCannotBeReplayed)
+{
+    StreamFlight s;
+    ASSERT_TRUE(s.begin());
+    ASSERT_EQ(s.ask(StreamFlight::kStart), StreamFlight::kAccepted);
+    ASSERT_TRUE(s.fly_to_data());
+    s.f->obstacles = {s.f->position + jink::Vec3(0.0F, 45.0F, 0.0F)};
+    s.fly(500);
+    static_cast<void>(scratch.write("board.ulg", s.receiver.file));
+    EXPECT_EQ(run("board.ulg"), 0) << out;
+    EXPECT_TRUE(says("end: complete")) << out;
+    EXPECT_TRUE(says("decisions: " + std::to_string(s.manoeuvres))) << out;
+    EXPECT_TRUE(says("control autopilot -> announcing")) << out;
+    EXPECT_TRUE(says("app_counters.steps")) << out;
+    EXPECT_EQ(run("--replay board.ulg"), 2) << out;
+    EXPECT_TRUE(says("another format")) << out;
+    EXPECT_EQ(run("--csv tables board.ulg"), 0) << out;
 }
 
 TEST_F(LogCommand, SaysWhatIsDamagedAndReadsTheRest)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The whole Coprocessor::step: time, bytes and the state of the line come from the input; a minimal autopilot is behind
 // the wire, so that conflicts, take-overs and faults are reachable. First byte: 1 repair checksums, 2 raw frames claim
-// to be the autopilot's, 4 a PX4, 8 requests are acknowledged. Then records, the first byte's low three bits saying
-// which, the other five an argument:
+// to be the autopilot's, 4 a PX4, 8 requests are acknowledged, 16 a log is streamed. Then records, the first byte's low
+// three bits saying which, the other five an argument:
 //   0 raw [length][bytes]   1 ticks (argument + 1)   2 autopilot [bits]   3 line [space]   4 traffic
 //   [x][y][z][vx][vy][bits] 5 parameter [index][float]   6 no step for argument * 0.1 s   7 range [range][bits]
 // Checked after each step: set-points are finite, within the vehicle's limits, recent, and never sent in a fault;
@@ -15,6 +15,7 @@
 #include <memory>
 
 #include "firmware/app/cloud_input.hpp"
+#include "firmware/flight_log/log_stream.hpp"
 #include "tests/fuzz/check.hpp"
 #include "tests/fuzz/mavlink_repair.hpp"
 #include "tests/unit/app/flight.hpp"
@@ -40,12 +41,16 @@ bool only_grow(const Counters& before, const Counters& after)
 
 class Run {
 public:
-    explicit Run(unsigned options) : repairs_((options & 1U) != 0), claims_((options & 2U) != 0)
+    explicit Run(unsigned options)
+        : repairs_((options & 1U) != 0), claims_((options & 2U) != 0), logs_((options & 16U) != 0)
     {
         f_.px4 = (options & 4U) != 0;
         f_.acknowledges = (options & 8U) != 0;
         f_.mode = f_.mission_mode();
         f_.coprocessor.use_clouds(clouds_);
+        if (logs_) {
+            f_.coprocessor.stream(log_);
+        }
     }
 
     [[nodiscard]] bool over() const { return steps_ >= kMaxSteps; }
@@ -157,6 +162,28 @@ private:
         }
     }
 
+    /// A receiver that starts anew now and then, and whose acknowledgements are sometimes lost.
+    void receive_log()
+    {
+        if (steps_ % 128 == 60) {
+            CommandLong start;
+            start.command = steps_ % 384 == 60 ? 2511 : 2510;
+            start.target_system = wire::kSystem;
+            start.target_component = wire::kUs;
+            f_.feed(start, 190);
+        }
+        for (const LoggingDataAcked& m : f_.said_of<LoggingDataAcked>()) {
+            JINK_FUZZ_CHECK(m.length > 0 && m.length <= m.data.size());
+            LoggingAck ack;
+            ack.sequence = static_cast<std::uint16_t>(m.sequence + (steps_ % 7 == 0 ? 1 : 0));
+            ack.target_system = wire::kSystem;
+            ack.target_component = wire::kUs;
+            f_.feed(ack, 190);
+        }
+        JINK_FUZZ_CHECK(f_.said_of<LoggingData>().size() + f_.said_of<LoggingDataAcked>().size() <= 1);
+        JINK_FUZZ_CHECK(log_.ring().size() <= flightlog::MessageRing::kBytes);
+    }
+
     void step()
     {
         ++steps_;
@@ -181,6 +208,9 @@ private:
         note_limits();
         listen(report);
         f_.react();
+        if (logs_) {
+            receive_log();
+        }
     }
 
     /// The greatest speeds that there was a reason for.
@@ -224,10 +254,12 @@ private:
     }
 
     CloudInput clouds_;
+    flightlog::LogStream log_{921600};
     Flight f_;
     Parser ears_;
     bool repairs_;
     bool claims_;
+    bool logs_;
     int steps_ = 0;
     float level_ = 0.0F;
     float vertical_ = 0.0F;

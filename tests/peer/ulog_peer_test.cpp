@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "tests/flight_log/recorded_flight.hpp"
+#include "tests/flight_log/stream_flight.hpp"
 #include "tests/peer/peer_process.hpp"
 #include "toolchain/sim/random_scenario.hpp"
 
@@ -102,14 +103,14 @@ Lines peer_lines(const std::string& log)
     return lines;
 }
 
-void expect_the_same(const std::string& log)
+void expect_the_same(const std::string& log, std::size_t more_than = 1'000)
 {
     Lines own = own_lines(log);
     Lines peer = peer_lines(log);
     sort_head(own);
     sort_head(peer);
     ASSERT_EQ(own.size(), peer.size());
-    ASSERT_GT(own.size(), 1'000U);
+    ASSERT_GT(own.size(), more_than);
     for (std::size_t i = 0; i < own.size(); ++i) {
         ASSERT_EQ(own[i], peer[i]) << "line " << i;
     }
@@ -135,6 +136,23 @@ TEST(UlogPeer, ReadsALogThatIsCut)
 {
     for (const std::size_t lost : {1U, 17U, 100U, 1'000U}) {
         expect_the_same(flight().substr(0, flight().size() - lost));
+    }
+}
+
+/// As a receiver puts it together, with and without gaps.
+TEST(UlogPeer, ReadsALogThatABoardStreams)
+{
+    for (const double loss : {0.0, 0.2}) {
+        StreamFlight s;
+        s.lose_data = loss;
+        ASSERT_TRUE(s.begin());
+        ASSERT_EQ(s.ask(StreamFlight::kStart), StreamFlight::kAccepted);
+        ASSERT_TRUE(s.fly_to_data());
+        s.f->obstacles = {s.f->position + Vec3(0.0F, 45.0F, 0.0F)};
+        s.fly(600);
+        ASSERT_GT(s.manoeuvres, 0) << "nothing was decided";
+        ASSERT_EQ(s.receiver.lost > 0, loss > 0.0);
+        expect_the_same(s.receiver.file, 200);
     }
 }
 

@@ -9,7 +9,7 @@ if(CMAKE_CROSSCOMPILING)
   set(JINK_FINDS_CCD "")
 endif()
 install(TARGETS ${jink_exported} EXPORT jinkTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-foreach(room core hal firmware/link firmware/vehicles firmware/app)
+foreach(room core hal firmware/link firmware/vehicles firmware/app firmware/flight_log)
   cmake_path(GET room PARENT_PATH above)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/jink/${above}
           FILES_MATCHING PATTERN "*.hpp" PATTERN "sections.ld")

@@ -208,9 +208,9 @@ inline constexpr std::array<MessageInfo, 293> kCatalogue{{
     {263, 133, 255, 255},  // CAMERA_IMAGE_CAPTURED, passed over
     {264, 49, 28, 255},  // FLIGHT_INFORMATION, passed over
     {265, 26, 16, 255},  // MOUNT_ORIENTATION, passed over
-    {266, 193, 255, 255},  // LOGGING_DATA, passed over
-    {267, 35, 255, 255},  // LOGGING_DATA_ACKED, passed over
-    {268, 14, 4, 255},  // LOGGING_ACK, passed over
+    {266, 193, 255, 255},  // LOGGING_DATA
+    {267, 35, 255, 255},  // LOGGING_DATA_ACKED
+    {268, 14, 4, 4},  // LOGGING_ACK
     {269, 109, 213, 255},  // VIDEO_STREAM_INFORMATION, passed over
     {270, 59, 19, 255},  // VIDEO_STREAM_STATUS, passed over
     {271, 22, 52, 255},  // CAMERA_FOV_STATUS, passed over

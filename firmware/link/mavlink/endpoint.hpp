@@ -94,6 +94,10 @@
 //   that is not a finite REAL32 has value_finite = false.
 // * TUNNEL addressed to us alone, of the type kConstraintPayload: one closed area of a set (constraint_message.hpp). A
 //   malformed payload is answered at once, and counts out_of_range; every other part is passed on.
+// * LOGGING_ACK addressed to us alone is passed on. A part of a log goes out as LOGGING_DATA, or as LOGGING_DATA_ACKED
+//   where it has to be acknowledged.
+// * AUTOPILOT_VERSION on request: MAV_PROTOCOL_CAPABILITY_MAVLINK2 and PARAM_ENCODE_C_CAST, the version as four bytes
+//   (major, minor, patch, FIRMWARE_VERSION_TYPE_DEV). All other fields are 0: there is no middleware, system or id.
 // * SETUP_SIGNING (256) addressed to us alone: sets another key, or removes the key if the key is zeros and the time 0.
 //   Accepted if the owner stores keys, while the autopilot is disarmed, and, if a key is set, only when signed with it.
 //   The answer is a text; the message has no other. Counted: keys_set, keys_refused.
@@ -142,6 +146,8 @@ public:
     void send_param(const ParamName& name, float value, std::uint16_t index, std::uint16_t count) noexcept override;
     void acknowledge(const CommandRequest& request, CommandResult result) noexcept override;
     void acknowledge(const ConstraintPart& part, ConstraintResult result) noexcept override;
+    void send_version(const Version& version) noexcept override;
+    [[nodiscard]] bool send_log(const LogPart& part) noexcept override;
     void request_external_mode() noexcept override;
     void request_mode(std::uint32_t custom_mode) noexcept override;
     void request_heartbeat() noexcept override;
@@ -217,6 +223,7 @@ private:
     void on_param(const Context& c) noexcept;
     void on_tunnel(const Context& c) noexcept;
     void on_setup_signing(const Context& c) noexcept;
+    void on_log_ack(const Context& c) noexcept;
 
     [[nodiscard]] bool from_autopilot(const Frame& frame) const noexcept;
     [[nodiscard]] bool for_us(std::uint8_t system, std::uint8_t component) const noexcept;
@@ -243,11 +250,27 @@ private:
     void send_mode(std::uint32_t custom_mode) noexcept;
     [[nodiscard]] bool takes_guided_points() const noexcept;
     void send_guided_point(const Vec3& velocity, TimePoint now) noexcept;
+    /// A structure of a message, whose kind the code below does not know: once for all messages.
+    struct Unsent {
+        const std::byte* object;
+        Layout layout;
+        bool is_heartbeat;
+    };
     template <Message M>
-    [[nodiscard]] std::size_t encode_as(const M& message, std::uint8_t sequence, std::span<std::byte> out) noexcept;
+    [[nodiscard]] static Unsent unsent(const M& message) noexcept
+    {
+        return {
+            reinterpret_cast<const std::byte*>(&message), {M::kInfo, M::kFields}, M::kInfo.id == Heartbeat::kInfo.id};
+    }
+    [[nodiscard]] std::size_t encode_as(const Unsent& message, std::uint8_t sequence,
+                                        std::span<std::byte> out) noexcept;
+    bool send_unsent(const Unsent& message, Perishable kind) noexcept;
     void ask_for_streams(TimePoint now) noexcept;
     template <Message M>
-    void send(const M& message, Perishable kind = Perishable::no) noexcept;
+    bool send(const M& message, Perishable kind = Perishable::no) noexcept
+    {
+        return send_unsent(unsent(message), kind);
+    }
     void take_back(Perishable kind) noexcept;
 
     EndpointOptions options_;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // All sent messages: time, rate and mission requests, modes, set-points, answers, last words.
+#include <algorithm>
+
 #include "firmware/link/mavlink/constraint_message.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
 #include "firmware/link/mavlink/numbers.hpp"
@@ -36,30 +38,30 @@ void Endpoint::take_back(Perishable kind) noexcept
     }
 }
 
-template <Message M>
-std::size_t Endpoint::encode_as(const M& message, std::uint8_t sequence, std::span<std::byte> out) noexcept
+std::size_t Endpoint::encode_as(const Unsent& message, std::uint8_t sequence, std::span<std::byte> out) noexcept
 {
     // System id 0 is invalid: until the autopilot is known, its usual id is used.
     const Header header{system_ != 0 ? system_ : kUsualSystem, options_.component_id, sequence};
-    return signing_ != nullptr && signing_->has_key() ? encode_signed(message, header, *signing_, out)
-                                                      : encode(message, header, out);
+    Signing* const signing = signing_ != nullptr && signing_->has_key() ? signing_ : nullptr;
+    return encode_v2(message.object, message.layout, header, signing, out);
 }
 
-template <Message M>
-void Endpoint::send(const M& message, Perishable kind) noexcept
+/// @return false: not queued
+bool Endpoint::send_unsent(const Unsent& message, Perishable kind) noexcept
 {
-    if (system_ == 0 && M::kInfo.id != Heartbeat::kInfo.id) {  // no receiver is known yet
-        return;
+    if (system_ == 0 && !message.is_heartbeat) {  // no receiver is known yet
+        return false;
     }
     take_back(kind);
     std::array<std::byte, kMaxFrame> frame;
     const std::size_t size = encode_as(message, sequence_, frame);
     if (!transmit_.push({frame.data(), size}, kind)) {
         ++diagnostics_.outbox_full;
-        return;
+        return false;
     }
     ++sequence_;
     ++diagnostics_.frames_out;
+    return true;
 }
 
 void Endpoint::on_timesync(const Context& c) noexcept
@@ -304,6 +306,35 @@ void Endpoint::acknowledge(const ConstraintPart& part, ConstraintResult result) 
     send(m);
 }
 
+void Endpoint::send_version(const Version& version) noexcept
+{
+    constexpr std::uint64_t kMavlink2 = 8192;         // MAV_PROTOCOL_CAPABILITY_MAVLINK2
+    constexpr std::uint64_t kParamsEncoded = 131072;  // MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_C_CAST
+    constexpr std::uint32_t kDevelopment = 0;         // FIRMWARE_VERSION_TYPE_DEV
+    AutopilotVersion m;
+    m.capabilities = kMavlink2 | kParamsEncoded;
+    m.flight_sw_version = static_cast<std::uint32_t>(version.major) << 24U |
+                          static_cast<std::uint32_t>(version.minor) << 16U |
+                          static_cast<std::uint32_t>(version.patch) << 8U | kDevelopment;
+    send(m);
+}
+
+bool Endpoint::send_log(const LogPart& part) noexcept
+{
+    const auto fill = [&part](auto&& m) noexcept {
+        const std::size_t n = std::min(part.bytes.size(), m.data.size());
+        m.sequence = part.sequence;
+        m.target_system = part.to_system;
+        m.target_component = part.to_component;
+        m.length = static_cast<std::uint8_t>(n);
+        m.first_message_offset = part.first_message;
+        std::transform(part.bytes.begin(), part.bytes.begin() + static_cast<std::ptrdiff_t>(n), m.data.begin(),
+                       [](std::byte b) { return static_cast<std::uint8_t>(b); });
+        return m;
+    };
+    return part.is_acknowledged ? send(fill(LoggingDataAcked())) : send(fill(LoggingData()));
+}
+
 void Endpoint::request_external_mode() noexcept { send_mode(external_mode(autopilot_.stack, vehicle_class_)); }
 void Endpoint::request_mode(std::uint32_t custom_mode) noexcept { send_mode(custom_mode); }
 void Endpoint::request_heartbeat() noexcept
@@ -325,7 +356,7 @@ std::size_t Endpoint::compose_last_words(std::span<std::byte> out, bool hold, st
     std::size_t size = 0;
     bool fits = true;
     const auto add = [&](const auto& message) {
-        const std::size_t n = encode_as(message, number++, out.subspan(size));
+        const std::size_t n = encode_as(unsent(message), number++, out.subspan(size));
         fits = fits && n > 0;
         size += n;
     };

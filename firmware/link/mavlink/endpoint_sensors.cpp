@@ -171,6 +171,7 @@ void Endpoint::dispatch_requests(const Context& c) noexcept
     case ParamSet::kInfo.id: on_param(c); break;
     case Tunnel::kInfo.id: on_tunnel(c); break;
     case SetupSigning::kInfo.id: on_setup_signing(c); break;
+    case LoggingAck::kInfo.id: on_log_ack(c); break;
     default: ++diagnostics_.frames_ignored;
     }
 }
@@ -220,6 +221,19 @@ void Endpoint::on_command(const Context& c) noexcept
                                  c.frame.header.system_id,
                                  c.frame.header.component_id};
     if (!c.inbox.commands.try_push_back(request)) {
+        ++diagnostics_.inbox_full;
+    }
+}
+
+void Endpoint::on_log_ack(const Context& c) noexcept
+{
+    LoggingAck m;
+    static_cast<void>(decode(c.frame, m));
+    if (!for_us(m.target_system, m.target_component)) {
+        ++diagnostics_.frames_ignored;
+        return;
+    }
+    if (!c.inbox.log_acks.try_push_back({m.sequence, c.frame.header.system_id, c.frame.header.component_id})) {
         ++diagnostics_.inbox_full;
     }
 }

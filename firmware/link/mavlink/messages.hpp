@@ -1359,6 +1359,63 @@ inline constexpr std::array<Field, 4> SetupSigning::kFields{{
     {offsetof(SetupSigning, secret_key), 10, 32, FieldType::u8},
 }};
 
+/// LOGGING_DATA (266), common.
+struct LoggingData {
+    std::uint16_t sequence = 0;
+    std::uint8_t target_system = 0;
+    std::uint8_t target_component = 0;
+    std::uint8_t length = 0;  ///< [bytes]
+    std::uint8_t first_message_offset = 0;  ///< [bytes]
+    std::array<std::uint8_t, 249> data{};
+
+    static constexpr MessageInfo kInfo{266, 193, 255, 255};
+    static const std::array<Field, 6> kFields;
+};
+inline constexpr std::array<Field, 6> LoggingData::kFields{{
+    {offsetof(LoggingData, sequence), 0, 1, FieldType::u16},
+    {offsetof(LoggingData, target_system), 2, 1, FieldType::u8},
+    {offsetof(LoggingData, target_component), 3, 1, FieldType::u8},
+    {offsetof(LoggingData, length), 4, 1, FieldType::u8},
+    {offsetof(LoggingData, first_message_offset), 5, 1, FieldType::u8},
+    {offsetof(LoggingData, data), 6, 249, FieldType::u8},
+}};
+
+/// LOGGING_DATA_ACKED (267), common.
+struct LoggingDataAcked {
+    std::uint16_t sequence = 0;
+    std::uint8_t target_system = 0;
+    std::uint8_t target_component = 0;
+    std::uint8_t length = 0;  ///< [bytes]
+    std::uint8_t first_message_offset = 0;  ///< [bytes]
+    std::array<std::uint8_t, 249> data{};
+
+    static constexpr MessageInfo kInfo{267, 35, 255, 255};
+    static const std::array<Field, 6> kFields;
+};
+inline constexpr std::array<Field, 6> LoggingDataAcked::kFields{{
+    {offsetof(LoggingDataAcked, sequence), 0, 1, FieldType::u16},
+    {offsetof(LoggingDataAcked, target_system), 2, 1, FieldType::u8},
+    {offsetof(LoggingDataAcked, target_component), 3, 1, FieldType::u8},
+    {offsetof(LoggingDataAcked, length), 4, 1, FieldType::u8},
+    {offsetof(LoggingDataAcked, first_message_offset), 5, 1, FieldType::u8},
+    {offsetof(LoggingDataAcked, data), 6, 249, FieldType::u8},
+}};
+
+/// LOGGING_ACK (268), common.
+struct LoggingAck {
+    std::uint16_t sequence = 0;
+    std::uint8_t target_system = 0;
+    std::uint8_t target_component = 0;
+
+    static constexpr MessageInfo kInfo{268, 14, 4, 4};
+    static const std::array<Field, 3> kFields;
+};
+inline constexpr std::array<Field, 3> LoggingAck::kFields{{
+    {offsetof(LoggingAck, sequence), 0, 1, FieldType::u16},
+    {offsetof(LoggingAck, target_system), 2, 1, FieldType::u8},
+    {offsetof(LoggingAck, target_component), 3, 1, FieldType::u8},
+}};
+
 /// PROTOCOL_VERSION (300), common, deprecated.
 struct ProtocolVersion {
     std::uint16_t version = 0;
@@ -1920,6 +1977,9 @@ using AllMessages = MessageList<
     NamedValueFloat,
     Statustext,
     SetupSigning,
+    LoggingData,
+    LoggingDataAcked,
+    LoggingAck,
     ProtocolVersion,
     ParamExtRequestRead,
     ParamExtValue,

@@ -59,6 +59,8 @@ public:
     {
         link_.acknowledge(part, result);
     }
+    void send_version(const link::Version& version) noexcept override { link_.send_version(version); }
+    [[nodiscard]] bool send_log(const link::LogPart& part) noexcept override { return link_.send_log(part); }
     void request_external_mode() noexcept override { link_.request_external_mode(); }
     void request_mode(std::uint32_t custom_mode) noexcept override { link_.request_mode(custom_mode); }
     void request_heartbeat() noexcept override { link_.request_heartbeat(); }

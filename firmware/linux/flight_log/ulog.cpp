@@ -28,14 +28,13 @@ void Messages::put(std::string_view text) { append(std::as_bytes(std::span(text)
 
 void Messages::file_header(std::uint64_t started)
 {
-    constexpr std::array<std::uint8_t, 8> kMagic{'U', 'L', 'o', 'g', 0x01, 0x12, 0x35, 1};
-    put(kMagic);
+    put(kMagicAndVersion);
     put(started);
 }
 
 void Messages::flag_bits(std::uint8_t compatible)
 {
-    std::array<std::uint8_t, 40> flags{};
+    std::array<std::uint8_t, kFlagBytes> flags{};
     flags[0] = compatible;
     put(static_cast<std::uint16_t>(flags.size()));
     put(Type::flag_bits);

@@ -9,7 +9,6 @@ namespace jink::ulog {
 namespace {
 
 constexpr std::array<std::uint8_t, 7> kMagic{'U', 'L', 'o', 'g', 0x01, 0x12, 0x35};
-constexpr std::size_t kFlagBytes = 40;
 
 bool is_name(std::string_view text, std::string_view more)
 {

@@ -10,6 +10,7 @@
 #include "tests/target/board/debugger.hpp"
 #include "toolchain/sim/board_line.hpp"
 #include "toolchain/sim/child.hpp"
+#include "toolchain/sim/frame_writer.hpp"
 #include "toolchain/sim/hold_up.hpp"
 #include "toolchain/sim/plant.hpp"
 
@@ -55,6 +56,16 @@ public:
     [[nodiscard]] std::uint32_t symbol(const std::string& part) const;
     /// A ground station's request.
     void ask_for_mission();
+    /// Of a ground station, to the board.
+    template <link::mavlink::Message M>
+    void say(M message)
+    {
+        message.target_system = sim::kAutopilot.system;
+        message.target_component = 196;
+        ground_.write(message, sim::kGroundStation);
+        line_.say(ground_.bytes());
+        ground_.bytes().clear();
+    }
 
     [[nodiscard]] double seconds() const { return static_cast<double>(plant_.now()) * 1e-6; }
     [[nodiscard]] sim::Plant& plant() { return plant_; }
@@ -76,6 +87,7 @@ private:
     std::unique_ptr<Debugger> debugger_;
     sim::HoldUp hold_up_;
     std::map<std::string, std::uint32_t> symbols_;
+    sim::FrameWriter ground_;
     link::mavlink::Parser parser_;
     std::vector<Heard> heard_;
     std::chrono::steady_clock::time_point moved_;  ///< when the plant last did

@@ -137,6 +137,8 @@ public:
     {
         honest_.acknowledge(part, result);
     }
+    void send_version(const link::Version& version) noexcept override { honest_.send_version(version); }
+    bool send_log(const link::LogPart& part) noexcept override { return honest_.send_log(part); }
     void request_external_mode() noexcept override { honest_.request_external_mode(); }
     void request_mode(std::uint32_t mode) noexcept override { honest_.request_mode(mode); }
     void request_heartbeat() noexcept override { honest_.request_heartbeat(); }

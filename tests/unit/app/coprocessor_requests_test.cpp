@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+
 #include "tests/numbers.hpp"
 #include "tests/unit/app/flight.hpp"
 
@@ -276,6 +278,43 @@ TEST_F(CoprocessorRequests, HeartbeatIsSentOnRequestAndOtherCommandsAreUnsupport
     f.fly(1);
     EXPECT_TRUE(f.said_of<CommandAck>().empty());
     EXPECT_EQ(counted().commands, 5U + refused);
+}
+
+/// By REQUEST_MESSAGE, and by the command that is older; every other form is denied and sends nothing.
+TEST_F(CoprocessorRequests, TheVersionIsSentOnRequest)
+{
+    const auto result = [&](std::uint16_t command, float param1) {
+        CommandLong m;
+        m.command = command;
+        m.param1 = param1;
+        ask(m);
+        const auto acks = f.said_of<CommandAck>();
+        EXPECT_EQ(acks.size(), 1U);
+        return acks.empty() ? -1 : static_cast<int>(acks[0].result);
+    };
+    unsigned major = 0;
+    unsigned minor = 0;
+    unsigned patch = 0;
+    ASSERT_EQ(std::sscanf(JINK_TEST_VERSION, "%u.%u.%u", &major, &minor, &patch), 3);
+    for (const auto& [command, param1] : {std::pair{512, 148.0F}, std::pair{520, 1.0F}}) {
+        EXPECT_EQ(result(static_cast<std::uint16_t>(command), param1), static_cast<int>(link::CommandResult::accepted));
+        const auto versions = f.said_of<AutopilotVersion>();
+        ASSERT_EQ(versions.size(), 1U) << command;
+        EXPECT_EQ(versions[0].flight_sw_version, (major << 24U) + (minor << 16U) + (patch << 8U))
+            << "major, minor, patch, a byte each; development";
+        EXPECT_EQ(versions[0].capabilities, 8192U | 131072U) << "MAVLink 2, and parameters by their value";
+        EXPECT_EQ(versions[0].uid, 0U);
+        EXPECT_EQ(versions[0].uid2, decltype(versions[0].uid2){});
+        EXPECT_EQ(versions[0].middleware_sw_version, 0U);
+        EXPECT_EQ(versions[0].os_sw_version, 0U);
+    }
+    for (const auto& [command, param1] :
+         {std::pair{512, 147.0F}, std::pair{512, 148.5F}, std::pair{520, 0.0F}, std::pair{520, kNan}}) {
+        EXPECT_EQ(result(static_cast<std::uint16_t>(command), param1), static_cast<int>(link::CommandResult::denied));
+        EXPECT_TRUE(f.said_of<AutopilotVersion>().empty());
+    }
+    EXPECT_EQ(counted().commands, 6U);
+    EXPECT_EQ(counted().commands_refused, 4U);
 }
 
 /// A board's longest step, in a text with the next HEARTBEAT however often it is asked for; denied where none counts.

@@ -49,6 +49,8 @@ public:
     }
     void acknowledge(const link::CommandRequest& /*request*/, link::CommandResult /*result*/) noexcept override {}
     void acknowledge(const link::ConstraintPart& /*part*/, link::ConstraintResult /*result*/) noexcept override {}
+    void send_version(const link::Version& /*version*/) noexcept override {}
+    bool send_log(const link::LogPart& /*part*/) noexcept override { return false; }
     void request_external_mode() noexcept override { asked = link::FlightMode::external; }
     void request_mode(std::uint32_t /*mode*/) noexcept override { asked = link::FlightMode::mission; }
     void request_heartbeat() noexcept override { ++heartbeats_asked_for; }

@@ -78,6 +78,14 @@ struct StepLink final : link::Link {
     {
         constraints.push_back(result);
     }
+    void send_version(const link::Version& version) noexcept override { versions.push_back(version); }
+    bool send_log(const link::LogPart& part) noexcept override
+    {
+        if (takes_log) {
+            log_parts.push_back({part, {part.bytes.begin(), part.bytes.end()}});
+        }
+        return takes_log;
+    }
     void request_external_mode() noexcept override { requests.emplace_back("external"); }
     void request_mode(std::uint32_t mode) noexcept override { requests.push_back(std::to_string(mode)); }
     void request_heartbeat() noexcept override { requests.emplace_back("heartbeat"); }
@@ -108,6 +116,9 @@ struct StepLink final : link::Link {
     std::vector<Param> params;
     std::vector<std::pair<std::uint16_t, link::CommandResult>> commands;
     std::vector<link::ConstraintResult> constraints;
+    std::vector<link::Version> versions;
+    bool takes_log = true;
+    std::vector<std::pair<link::LogPart, std::vector<std::byte>>> log_parts;  ///< and the bytes of each
     std::vector<std::string> requests;
     std::pair<bool, std::string> last_words;
     link::LinkDiagnostics counts;
