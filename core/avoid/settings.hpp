@@ -76,9 +76,12 @@ struct WorkPerUpdate {
         std::max<std::uint32_t>(1000, 2U * units::kCostPoint * static_cast<std::uint32_t>(kMaxPathPoints) +
                                           units::closeness_units(kMaxPathPoints, 2 * kMaxTracks));
     static constexpr std::uint32_t kMinMandatory = 1000;
+    /// More than this with large capacities alone.
+    static constexpr std::uint32_t kUsualSlice = 22000;
+    static constexpr std::uint32_t kInitialSlice = std::max(kUsualSlice, kMinSlice);
 
-    std::uint32_t all = 60000;    ///< at least `slice` + kMinMandatory
-    std::uint32_t slice = 22000;  ///< kMinSlice at least
+    std::uint32_t all = 38000 + kInitialSlice;  ///< at least `slice` + kMinMandatory
+    std::uint32_t slice = kInitialSlice;        ///< kMinSlice at least
     friend constexpr bool operator==(const WorkPerUpdate&, const WorkPerUpdate&) noexcept = default;
 };
 [[nodiscard]] constexpr bool is_valid(const WorkPerUpdate& work) noexcept

@@ -71,8 +71,10 @@ private:
     std::uint64_t instructions_;
 };
 
-/// What is done where nothing else is said is for processors from this clock on [Hz].
+/// What is done where nothing else is said is for processors from this clock on [Hz], unless capacities are so large
+/// that the least slice is more than the usual one.
 inline constexpr std::uint32_t kMinClockOfDefault = 1'000'000'000;
-static_assert(WorkRate(kMinClockOfDefault).has_time_for(avoid::WorkPerUpdate{}));
+static_assert(avoid::WorkPerUpdate::kMinSlice > avoid::WorkPerUpdate::kUsualSlice ||
+              WorkRate(kMinClockOfDefault).has_time_for(avoid::WorkPerUpdate{}));
 
 }  // namespace jink::app
