@@ -85,16 +85,15 @@ public:
                                std::span<const std::uint32_t> unit) noexcept override
     {
         // A flash word that is not erased would get a wrong code.
-        constexpr std::uint32_t kErased = 0xFFFFFFFF;
-        if (unit.size() != kUnitWords || offset % kUnitBytes != 0 ||
-            !reads_as(sector, offset, [](auto) { return kErased; }) || is_swapped() || !controller_.unlock()) {
+        if (unit.size() != kUnitWords || offset % kUnitBytes != 0 || !reads_as(sector, offset, kErased) ||
+            is_swapped() || !controller_.unlock()) {
             return false;
         }
         controller_.control(kDoubleWords | kProgram);
         for (std::uint32_t i = 0; i < kUnitWords; ++i) {
             memory_.write(sector * kSectorBytes + offset + 4U * i, unit[i]);  // the last one starts the program
         }
-        return controller_.finish(kProgramPatience) && reads_as(sector, offset, [&](auto i) { return unit[i]; });
+        return controller_.finish(kProgramPatience) && reads_as(sector, offset, unit);
     }
 
     [[nodiscard]] bool erase(std::uint32_t sector) noexcept override
@@ -121,15 +120,17 @@ private:
     static constexpr std::uint32_t kSectorNumber = 8;
 
     static constexpr std::uint32_t kUnitWords = kUnitBytes / 4U;
+    static constexpr std::array<std::uint32_t, kUnitWords> kErased{0xFFFFFFFF, 0xFFFFFFFF, 0xFFFFFFFF, 0xFFFFFFFF,
+                                                                   0xFFFFFFFF, 0xFFFFFFFF, 0xFFFFFFFF, 0xFFFFFFFF};
     static constexpr std::uint32_t kProgramPatience = 20'000;
 
     [[nodiscard]] bool is_swapped() noexcept { return (controller_.registers().read(kOptions) & kSwapBank) != 0; }
 
-    template <class Expected>
-    [[nodiscard]] bool reads_as(std::uint32_t sector, std::uint32_t offset, Expected expected) noexcept
+    [[nodiscard]] bool reads_as(std::uint32_t sector, std::uint32_t offset,
+                                std::span<const std::uint32_t> unit) noexcept
     {
         for (std::uint32_t i = 0; i < kUnitWords; ++i) {
-            if (read(sector, offset + 4U * i) != expected(i)) {
+            if (read(sector, offset + 4U * i) != unit[i]) {
                 return false;
             }
         }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The interrupt-fed UART drivers against models of their hardware. The models are written from the manuals (ARM DDI
 // 0479, 4.3; ST RM0090, 30; ST RM0433, 48), not from the drivers, and lose bytes where the hardware would.
+#include <algorithm>
 #include <deque>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 
 #include "core/base/random.hpp"
 #include "hal/cmsdk/cmsdk_uart.hpp"
+#include "hal/last_words.hpp"
 #include "hal/stm32f4/usart.hpp"
 #include "hal/stm32h7/usart.hpp"
 #include "tests/unit/hal/uart_models.hpp"
@@ -178,6 +180,20 @@ TYPED_TEST(UartDriver, LastWordsAreWrittenByWaiting)
         this->model.shift_out();
     }
     EXPECT_EQ(this->model.line, words);
+}
+
+TYPED_TEST(UartDriver, LastWordsAreOnTheLineWhenTheyEndSoThatAResetCutsNone)
+{
+    this->start();
+    this->model.free_running = true;
+    this->model.period = 7;  // the hardware's buffers fill up
+    Random random(4);
+    const Bytes words = random_bytes(random, 200);
+    constexpr std::size_t kFiller = 280;
+    EXPECT_TRUE(say_last_words<typename TypeParam::Driver>(By<typename TypeParam::Model>{&this->model},
+                                                           this->driver.to_send(), words, kFiller, 100));
+    ASSERT_GE(this->model.line.size(), kFiller + words.size());
+    EXPECT_TRUE(std::equal(words.begin(), words.end(), this->model.line.begin() + kFiller));
 }
 
 TYPED_TEST(UartDriver, LastWordsToALineThatIsStuckEnd)

@@ -18,14 +18,15 @@ struct CmsdkModel {
     std::deque<std::byte> shifting;  ///< one byte at most
     std::vector<std::byte> line;     ///< sent bytes
     bool woken = false;
-    bool free_running = false;  ///< a byte is sent at each read of the state
+    bool free_running = false;  ///< a byte is sent at each read of the state, or at each `period`th
+    unsigned period = 1, reads = 0;
 
     std::uint32_t read(std::uint32_t offset)
     {
         switch (offset) {
         case 0x00: state &= ~2U; return received;
         case 0x04:
-            if (free_running) {
+            if (free_running && ++reads % period == 0) {
                 shift_out();
             }
             return state;
@@ -85,12 +86,13 @@ struct UsartTransmitter {
     std::deque<std::byte> shifting;
     std::vector<std::byte> line;
     bool woken = false;
-    bool free_running = false;  ///< a byte is sent at each read of the status
+    bool free_running = false;  ///< a byte is sent at each read of the status, or at each `period`th
+    unsigned period = 1, reads = 0;
 
     /// A read of the status.
     std::uint32_t space(std::size_t depth)
     {
-        if (free_running) {
+        if (free_running && ++reads % period == 0) {
             shift_out();
         }
         return to_shift.size() < depth ? 1U << 7U : 0U;
