@@ -47,10 +47,12 @@ std::uint32_t track_in_conflict(const app::LoggedStep& step) noexcept
 void LogStream::begin(TimePoint now, std::span<const link::LogAck> acks) noexcept
 {
     now_ = now;
-    const auto is_answer = [this](const link::LogAck& ack) {
-        return ack.sequence == sequence_ && ack.from_system == to_system_ && ack.from_component == to_component_;
-    };
-    if (phase_ != Phase::definitions || waiting_.tries == 0 || std::none_of(acks.begin(), acks.end(), is_answer)) {
+    bool is_answered = false;
+    for (const link::LogAck& ack : acks) {
+        is_answered = is_answered || (ack.sequence == sequence_ && ack.from_system == to_system_ &&
+                                      ack.from_component == to_component_);
+    }
+    if (phase_ != Phase::definitions || waiting_.tries == 0 || !is_answered) {
         return;
     }
     place_ = waiting_.next;

@@ -24,7 +24,7 @@ struct StreamCounts {
     std::uint32_t given_up = 0;  ///< logs whose receiver acknowledged no more
 };
 
-/// A board's flight log, streamed as ULog over MAVLink to the receiver that asks for it (docs/guides/flight_log.md).
+/// A board's flight log, streamed as ULog over MAVLink to the receiver that asks for it (docs/guides/board_log.md).
 ///
 /// The protocol is that of PX4 (src/modules/mavlink/mavlink_ulog.cpp, src/modules/logger/log_writer_mavlink.cpp,
 /// msg/UlogStreamAck.msg): definitions first, each part acknowledged before the next; then data without

@@ -198,10 +198,11 @@ template <class T>
 
 /// The step's topic, but for its number and duration.
 /// @param conflict_id  of the track in conflict; 0: none
-[[nodiscard]] StepTopic step_topic(const app::StepReport& report, TimePoint now, std::uint32_t conflict_id) noexcept;
+[[nodiscard, gnu::cold]] StepTopic step_topic(const app::StepReport& report, TimePoint now,
+                                              std::uint32_t conflict_id) noexcept;
 /// @param own  own position [m]
-[[nodiscard]] DecisionTopic decision_topic(const app::StepReport& report, const Vec3& own, TimePoint now,
-                                           std::uint32_t number) noexcept;
+[[nodiscard, gnu::cold]] DecisionTopic decision_topic(const app::StepReport& report, const Vec3& own, TimePoint now,
+                                                      std::uint32_t number) noexcept;
 [[nodiscard]] CandidateTopic candidate_topic(const geometric::Candidate& candidate) noexcept;
 
 // Names of numbers in topics and in the status line; "?" for none. Each ends with a zero byte.

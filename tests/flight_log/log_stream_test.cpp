@@ -211,6 +211,7 @@ TEST(LogStream, EveryFileIsWholeWhateverIsLost)
         for (int run = 0; run < 2; ++run) {
             s.receiver = {};
             ASSERT_EQ(s.ask(kStart), StreamFlight::kAccepted);
+            const auto started = static_cast<std::uint64_t>(s.f->now.us);
             ASSERT_TRUE(s.fly_to_data(2'000));
             put_a_mast(s);
             s.fly(150 + static_cast<int>(s.random() % 300));
@@ -223,6 +224,7 @@ TEST(LogStream, EveryFileIsWholeWhateverIsLost)
             EXPECT_EQ(c.parameters.size(), app::kParamCount);
             EXPECT_TRUE(c.is_in_order);
             EXPECT_GT(c.topics.at("jink_step"), 10);
+            EXPECT_GT(c.steps.at(0).timestamp, started) << "nothing of the log before";
             EXPECT_EQ(c.dropouts > 0, s.receiver.lost > 0);
             losses += s.receiver.lost;
             ++files;
@@ -261,6 +263,33 @@ TEST(LogStream, AReceiverThatDoesNotAcknowledgeIsGivenUp)
     ASSERT_EQ(s.ask(kStart), StreamFlight::kAccepted);
     EXPECT_TRUE(s.fly_to_data());
     EXPECT_EQ(s.stream->counts().starts, 3U);
+}
+
+/// Of the part that waits, by the receiver itself: everything else repeats the part.
+TEST(LogStream, OnlyTheRightAcknowledgementGoesOn)
+{
+    StreamFlight s;
+    ASSERT_TRUE(s.begin());
+    s.listens = false;
+    s.acknowledge(0);  // before there is a log
+    ASSERT_EQ(s.ask(kStart), StreamFlight::kAccepted);
+    for (std::uint16_t part = 0; part < 5; ++part) {
+        s.fly(4);
+        ASSERT_EQ(s.parts.back().sequence, part);
+        for (int i = 0; i < 5; ++i) {
+            s.acknowledge(static_cast<std::uint16_t>(part + 1));
+            s.acknowledge(static_cast<std::uint16_t>(part - 1));
+            s.acknowledge(part, 254);
+            s.acknowledge(part, StreamFlight::kGround, 1);
+            s.fly(4);
+            ASSERT_EQ(s.parts.back().sequence, part);
+        }
+        s.acknowledge(part);
+        s.acknowledge(part);
+        s.fly(2);  // the line's share may be used up for one step
+        ASSERT_EQ(s.parts.back().sequence, part + 1);
+    }
+    EXPECT_GT(s.stream->counts().repeated, 10U);
 }
 
 TEST(LogStream, OneReceiverAtATimeAndOneFormat)
@@ -364,11 +393,19 @@ TEST(LogStream, AFullLineIsLeftToTheRest)
     }
     EXPECT_GT(s.stream->ring().dropped(), 0U);
     EXPECT_EQ(s.f->endpoint.diagnostics().outbox_full, full);
+    link::mavlink::ParamSet set;
+    set.param_id = app::test::wire::param_name("JNK_LOOKAHEAD");
+    set.param_type = 9;
+    set.param_value = 11.0F;
+    s.send(set);
+    s.fly(20);
+    ASSERT_GT(s.stream->ring().size(), flightlog::MessageRing::kBytes - 20) << "no place for the change";
     s.f->port.room = 1U << 20U;
     s.fly(300);
     const Content c = read(s.receiver.file);
     EXPECT_EQ(c.end, ulog::End::complete);
     EXPECT_GT(c.dropouts, 0);
+    EXPECT_EQ(c.changed, (std::map<std::string, float>{{"JNK_LOOKAHEAD", 11.0F}})) << "a change is not lost";
     EXPECT_EQ(s.receiver.lost, 0) << "dropped before it was a part";
 }
 

@@ -16,7 +16,7 @@ import stack  # noqa: E402
 
 # With reach sets and reciprocal avoidance; the memory report has their limits and the limit of the rest
 # (toolchain/report/memory_sizes.py).
-MOST_FLASH = 684 * 1024
+MOST_FLASH = 692 * 1024
 STORE_IN_FLASH = {"stm32h743": 8 * 1024}  # parameters, on top of what mps2_an500 has; stm32f405 has smaller reach sets
 MOST_STATIC_RAM = 112 * 1024
 MOST_COUPLED = 64 * 1024
@@ -58,7 +58,7 @@ def main(build, image):
     rows = [
         ("flash: code, constants, initial values", text + data, MOST_FLASH + STORE_IN_FLASH.get(image, 0)),
         ("static RAM, stack included", data + bss, MOST_STATIC_RAM),
-        ("memory apart: plans, CAN", coupled, MOST_COUPLED),
+        ("memory apart: plans, log, CAN", coupled, MOST_COUPLED),
         ("stack by call graph: program", deepest, None),
         ("stack by call graph: an interrupt on top", interrupt, None),
         ("stack in all", deepest + interrupt, min(reserved, MOST_STACK)),

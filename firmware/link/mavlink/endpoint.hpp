@@ -146,8 +146,8 @@ public:
     void send_param(const ParamName& name, float value, std::uint16_t index, std::uint16_t count) noexcept override;
     void acknowledge(const CommandRequest& request, CommandResult result) noexcept override;
     void acknowledge(const ConstraintPart& part, ConstraintResult result) noexcept override;
-    void send_version(const Version& version) noexcept override;
-    [[nodiscard]] bool send_log(const LogPart& part) noexcept override;
+    [[gnu::cold]] void send_version(const Version& version) noexcept override;
+    [[nodiscard, gnu::cold]] bool send_log(const LogPart& part) noexcept override;
     void request_external_mode() noexcept override;
     void request_mode(std::uint32_t custom_mode) noexcept override;
     void request_heartbeat() noexcept override;
@@ -223,7 +223,7 @@ private:
     void on_param(const Context& c) noexcept;
     void on_tunnel(const Context& c) noexcept;
     void on_setup_signing(const Context& c) noexcept;
-    void on_log_ack(const Context& c) noexcept;
+    [[gnu::cold]] void on_log_ack(const Context& c) noexcept;
 
     [[nodiscard]] bool from_autopilot(const Frame& frame) const noexcept;
     [[nodiscard]] bool for_us(std::uint8_t system, std::uint8_t component) const noexcept;
