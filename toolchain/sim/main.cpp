@@ -220,10 +220,11 @@ int demo(const Options& options)
     std::vector<ReportedFlight> flights;
     for (std::size_t i = 0; i < scenarios.size(); ++i) {
         ReportedFlight flight = report_on(scenarios[i], std::move(records[i]), false);
-        // The candidates are only available in process.
+        // Candidates and work units are only available in process.
         Record inside = fly_in_process(scenarios[i]);
         if (flight.record.inside && inside.inside) {
-            flight.record.inside->fan = inside.inside->fan;
+            flight.record.inside->decisions = std::move(inside.inside->decisions);
+            flight.record.inside->work = std::move(inside.inside->work);
             flight.record.inside->first_candidate = inside.inside->first_candidate;
         }
         flights.push_back(std::move(flight));
