@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 #include "firmware/app/mode_evidence.hpp"
 #include "firmware/link/messages.hpp"
@@ -20,6 +21,21 @@ enum class Control : std::uint8_t {
                  ///< time
     overruled,   ///< a pilot or the autopilot chose another mode: hands off until this conflict is over
 };
+
+/// "?" for none of them. Ends with a zero byte.
+[[nodiscard]] constexpr std::string_view name_of(Control control) noexcept
+{
+    switch (control) {
+    case Control::autopilot: return "autopilot";
+    case Control::announcing: return "announcing";
+    case Control::requesting: return "requesting";
+    case Control::ours: return "ours";
+    case Control::returning: return "returning";
+    case Control::refused: return "refused";
+    case Control::overruled: return "overruled";
+    }
+    return "?";
+}
 
 /// What the application has to send because of it.
 enum class TakeoverAction : std::uint8_t { none, request_external, request_former, request_hold };

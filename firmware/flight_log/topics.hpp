@@ -206,7 +206,7 @@ template <class T>
 [[nodiscard]] CandidateTopic candidate_topic(const geometric::Candidate& candidate) noexcept;
 
 // Names of numbers in topics and in the status line; "?" for none. Each ends with a zero byte.
-[[nodiscard]] std::string_view name_of(app::Control control) noexcept;
+using app::name_of;  // of app::Control
 [[nodiscard]] std::string_view name_of(link::SystemState state) noexcept;
 [[nodiscard]] std::string_view name_of(avoid::State state) noexcept;
 [[nodiscard]] std::string_view name_of(world::ManoeuvreKind kind) noexcept;

@@ -112,13 +112,12 @@ public:
         return *this;
     }
     Composer& put_text(std::string_view text) noexcept { return put_bytes(std::as_bytes(std::span(text))); }
-    /// Zeros.
-    Composer& fill(std::size_t n) noexcept
+    /// The next n bytes, which the caller writes; fewer where they do not fit.
+    [[nodiscard]] std::span<std::byte> room(std::size_t n) noexcept
     {
         n = std::min(n, buffer_.size() - size_);
-        std::memset(buffer_.data() + size_, 0, n);
         size_ += n;
-        return *this;
+        return buffer_.subspan(size_ - n, n);
     }
     /// The whole message.
     [[nodiscard]] std::span<const std::byte> end() noexcept

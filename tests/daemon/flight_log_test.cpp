@@ -10,7 +10,10 @@
 #include <limits>
 
 #include "firmware/linux/flight_log/replay.hpp"
+#include "firmware/linux/map_file.hpp"
 #include "tests/daemon/harness.hpp"
+#include "tests/daemon/stalling_folder.hpp"
+#include "tests/oracle/map_of_hulls.hpp"
 #include "toolchain/host/log_summary.hpp"
 #include "toolchain/sim/child.hpp"
 #include "toolchain/sim/plant.hpp"
@@ -56,13 +59,14 @@ protected:
         auto next = Clock::now();
         const auto end = next + lasting;
         std::vector<std::byte> waiting;
-        while (Clock::now() < end && !plant.finished()) {
+        while (Clock::now() < end && (ballast > 0 || !plant.finished())) {
             next += std::chrono::microseconds(sim::kStep);
             std::this_thread::sleep_until(next);
             plant.deliver(line.read());
             plant.step();
             const std::vector<std::byte> fresh = plant.collect();
             waiting.insert(waiting.end(), fresh.begin(), fresh.end());
+            waiting.resize(waiting.size() + ballast);
             waiting.erase(waiting.begin(), waiting.begin() + static_cast<std::ptrdiff_t>(line.write(waiting)));
         }
     }
@@ -100,6 +104,7 @@ protected:
     }
 
     std::string out;
+    std::size_t ballast = 0;  ///< zeros between the autopilot's frames in each kStep, so that logs grow faster
 };
 
 TEST_F(DaemonFlightLog, AFlightWithAManoeuvreReplaysBitForBit)
@@ -212,6 +217,115 @@ TEST_F(DaemonFlightLog, AFullDiskIsCountedAndTheFlightGoesOn)
     std::ifstream file(logs().front(), std::ios::binary);
     const host::LogSummary summary = host::summarise_log(file);
     EXPECT_GT(summary.steps, 10U) << "what fitted is readable";
+}
+
+/// A map file with one box.
+std::string map_of_box(const Vec3& centre, const Vec3& half)
+{
+    std::vector<Vec3> corners;
+    for (unsigned i = 0; i < 8; ++i) {
+        const Vec3 sign((i & 1U) != 0 ? 1.0F : -1.0F, (i & 2U) != 0 ? 1.0F : -1.0F, (i & 4U) != 0 ? 1.0F : -1.0F);
+        corners.push_back(centre + half.cwiseProduct(sign));
+    }
+    const oracle::MapOfHulls tables({corners});
+    return files::map_file_of(tables.map());
+}
+
+TEST_F(DaemonFlightLog, AFlightWithAMapReplaysWithThatMapAlone)
+{
+    scenario.threats.clear();
+    const sim::Vec leg = scenario.mission[1] - scenario.mission[0];
+    const Vec3 tower = (scenario.mission[0] + 45.0 * leg.normalized()).cast<float>();
+    const auto write = [&](const char* name, const std::string& text) {
+        std::ofstream(scratch / name, std::ios::binary) << text;
+        return (scratch / name).string();
+    };
+    const std::string map = write("tower.map", map_of_box(tower, {3.0F, 3.0F, 60.0F}));
+    const std::string other = write("other.map", map_of_box(tower, {3.0F, 3.0F, 59.5F}));
+    const std::string damaged = write("damaged.map", text_of(map).substr(0, 100));
+    {
+        sim::Plant plant(scenario);
+        Daemon daemon(arguments({"--map", map}), scratch / "said");
+        fly(plant, milliseconds(14'000));
+        daemon.signal(SIGTERM);
+        ASSERT_EQ(daemon.wait(kPatience), 0) << text_of(scratch / "said");
+    }
+    ASSERT_EQ(logs().size(), 1U);
+    EXPECT_GT(number("manoeuvres"), 0.0) << "nothing was decided about the tower";
+    EXPECT_EQ(jink_log("--replay --map '" + map + "'" + quoted()), 0) << out;
+    EXPECT_NE(out.find("bit-identical\n"), std::string::npos) << out;
+    EXPECT_NE(out.find(std::to_string(static_cast<int>(number("steps"))) + " steps replayed"), std::string::npos)
+        << out;
+    const struct {
+        std::string options;
+        const char* said;
+    } refusals[] = {{"", "a map was used: its file is needed (--map)"},
+                    {" --map '" + other + "'", "the map is not the one that was used: its checksum differs"},
+                    {" --map '" + damaged + "'", "damaged.map: the file ends too early"},
+                    {" --map '" + (scratch / "none.map").string() + "'", "none.map: no such file"}};
+    for (const auto& refusal : refusals) {
+        EXPECT_EQ(jink_log("--replay" + refusal.options + quoted()), 2) << refusal.options;
+        EXPECT_NE(out.find(refusal.said), std::string::npos) << refusal.options << ": " << out;
+        EXPECT_EQ(out.find("bit-identical"), std::string::npos) << refusal.options << ": " << out;
+    }
+}
+
+/// A file system whose writes get no answer while a conflict is flown, and until the queue is full.
+TEST_F(DaemonFlightLog, AFileSystemThatDoesNotAnswerDelaysNoStepAndItsLossesAreCounted)
+{
+    test::StallingFolder disk(folder);
+    if (!disk.why_not().empty()) {
+        GTEST_SKIP() << disk.why_not();
+    }
+    sim::Plant plant(scenario);
+    const auto heard = [&] { return plant.autopilot().heard(); };
+    Daemon daemon(arguments({"--status-period", "1"}), scratch / "said");
+    fly(plant, milliseconds(1'500));
+    disk.hold();
+    ballast = 300;
+    fly(plant, milliseconds(500));
+    ASSERT_GT(disk.waiting(), 0U) << "the log was not being written";
+    const sim::Heard before = heard();
+    const auto drops = [&] {
+        const std::string said = text_of(scratch / "said");
+        const std::size_t at = said.rfind("log files 1 dropped ");
+        return at == std::string::npos ? 0L : std::strtol(said.c_str() + at + 20, nullptr, 10);
+    };
+    for (const auto end = Clock::now() + milliseconds(60'000); drops() == 0 && Clock::now() < end;) {
+        fly(plant, milliseconds(500));
+    }
+    EXPECT_GT(drops(), 0) << text_of(scratch / "said");
+    EXPECT_GT(disk.waiting(), 0U) << "the write was answered in between";
+    const sim::Heard after = heard();
+    EXPECT_GT(after.setpoints, before.setpoints + 10) << "no conflict was flown";
+    EXPECT_EQ(after.bad_setpoints, 0U);
+    // Also when messages are dropped.
+    fly(plant, milliseconds(2'000));
+    EXPECT_GT(heard().heartbeats, after.heartbeats);
+    EXPECT_GT(after.heartbeats, before.heartbeats);
+    disk.release();
+    fly(plant, milliseconds(1'500));
+    EXPECT_EQ(disk.waiting(), 0U);
+    daemon.signal(SIGTERM);
+    ASSERT_EQ(daemon.wait(kPatience), 0) << text_of(scratch / "said");
+    disk.end(scratch / "kept");
+    folder = scratch / "kept";
+
+    ASSERT_EQ(logs().size(), 1U);
+    EXPECT_EQ(number("log_files"), 1.0);
+    EXPECT_EQ(number("log_write_failures"), 0.0);
+    EXPECT_GE(number("log_messages_dropped"), static_cast<double>(drops()));
+    std::ifstream file(logs().front(), std::ios::binary);
+    const host::LogSummary summary = host::summarise_log(file);
+    EXPECT_EQ(summary.end, ulog::End::complete);
+    EXPECT_GE(summary.dropouts, 1U);
+    EXPECT_GT(summary.dropout_time, 1.0) << "messages were dropped for at least 2 s";
+    EXPECT_LT(summary.steps, number("steps")) << "steps of the time without an answer are missing";
+    ASSERT_FALSE(summary.lines.empty());
+    EXPECT_EQ(summary.lines.back().text, "jinkd stops") << "it is written on";
+    EXPECT_EQ(jink_log("--replay" + quoted()), 1) << out;
+    EXPECT_NE(out.find("not exact from step"), std::string::npos) << out;
+    EXPECT_EQ(out.find("first difference"), std::string::npos) << out;
 }
 
 }  // namespace

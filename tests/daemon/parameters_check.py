@@ -5,8 +5,7 @@
     parameters_check.py metadata|running|params|refusals --jink PROGRAM --jinkd PROGRAM
 
 The metadata are held to the rules of MAVLink's parameter.schema.json, to the page of the parameters and to a running
-jinkd. Parameter files are loaded as QGroundControl loads them: line by line, each with a PARAM_SET. MAVLink is encoded
-and decoded here.
+jinkd. Parameter files are loaded as QGroundControl loads them: line by line, each with a PARAM_SET.
 """
 import argparse
 import json
@@ -24,7 +23,8 @@ import tty
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(TOP / "toolchain/report"))
+sys.path[:0] = [str(TOP / "toolchain/report"), str(TOP / "tests")]
+import mavlink_frames  # noqa: E402
 import parameters_page  # noqa: E402
 
 COMPONENT, REAL32 = 196, 9
@@ -61,20 +61,6 @@ def metadata(jink, *options):
     return json.loads(ran(jink, "parameters", *options))
 
 
-# --- MAVLink 2, as much as a ground station needs for parameters
-
-EXTRA = {0: 50, 21: 159, 22: 220, 23: 168}  # CRC_EXTRA of HEARTBEAT, PARAM_REQUEST_LIST, PARAM_VALUE, PARAM_SET
-
-
-def checksum(data):
-    crc = 0xFFFF
-    for byte in data:
-        byte = (byte ^ crc) & 0xFF
-        byte ^= (byte << 4) & 0xFF
-        crc = (crc >> 8) ^ (byte << 8) ^ (byte << 3) ^ (byte >> 4)
-    return crc
-
-
 class Station:
     """jinkd on a pseudo-terminal, with the autopilot's HEARTBEAT and a ground station on the other end."""
 
@@ -97,10 +83,8 @@ class Station:
         os.close(self.other)
 
     def send(self, number, payload, system, component):
-        payload = payload.rstrip(b"\0") or b"\0"
-        head = struct.pack("<BBBBBBHB", len(payload), 0, 0, self.sequence, system, component, number & 0xFFFF, number >> 16)
+        os.write(self.line, mavlink_frames.encode(number, payload, self.sequence, system, component))
         self.sequence = (self.sequence + 1) & 0xFF
-        os.write(self.line, b"\xfd" + head + payload + struct.pack("<H", checksum(head + payload + bytes([EXTRA[number]]))))
 
     def values(self, seconds):
         """PARAM_VALUE messages of jink that come in this time: (name, value, index, count, type)."""
@@ -114,19 +98,11 @@ class Station:
             yield from self.decoded()
 
     def decoded(self):
-        while (start := self.bytes.find(b"\xfd")) >= 0 and len(self.bytes) >= start + 12 + self.bytes[start + 1]:
-            size = self.bytes[start + 1]
-            frame = self.bytes[start + 1:start + 12 + size]
-            number = frame[6] | frame[7] << 8 | frame[8] << 16
-            if number in EXTRA and checksum(frame[:9 + size] + bytes([EXTRA[number]])) == struct.unpack("<H", frame[9 + size:])[0]:
-                self.bytes = self.bytes[start + 12 + size:]
-                if number == 22 and frame[5] == COMPONENT:
-                    value, count, index, name, kind = struct.unpack("<fHH16sB", frame[9:9 + size].ljust(25, b"\0"))
-                    yield name.rstrip(b"\0").decode(), value, index, count, kind
-            elif number in EXTRA:
-                self.bytes = self.bytes[start + 1:]  # a start byte inside of another frame
-            else:
-                self.bytes = self.bytes[start + 12 + size:]
+        found, self.bytes = mavlink_frames.frames(self.bytes)
+        for component, number, payload in found:
+            if number == 22 and component == COMPONENT:
+                value, count, index, name, kind = struct.unpack("<fHH16sB", payload.ljust(25, b"\0"))
+                yield name.rstrip(b"\0").decode(), value, index, count, kind
 
     def read_all(self):
         """{name: (value, type)} in the order of the indices, until every index has come."""

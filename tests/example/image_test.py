@@ -11,6 +11,9 @@ import subprocess
 import sys
 import time
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from mavlink_frames import HEARTBEAT, frames  # noqa: E402
+
 SKIPPED = 77
 WANTED = 3  # HEARTBEATs, one a second
 LONGEST = 60  # seconds
@@ -20,27 +23,6 @@ def run(*command):
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if done.returncode:
         sys.exit(f"failed ({done.returncode}): {' '.join(map(str, command))}\n{done.stdout}")
-
-
-def crc(data):
-    """CRC-16/MCRF4XX, as MAVLink takes it."""
-    value = 0xFFFF
-    for byte in data:
-        byte ^= value & 0xFF
-        byte = (byte ^ (byte << 4)) & 0xFF
-        value = (value >> 8) ^ (byte << 8) ^ (byte << 3) ^ (byte >> 4)
-    return value
-
-
-def heartbeats(data):
-    """Whole HEARTBEATs of MAVLink 2 in a stream of bytes."""
-    count, at = 0, 0
-    while (at := data.find(b"\xfd", at)) >= 0:
-        end = at + 12 + data[at + 1] if at + 1 < len(data) else len(data) + 1
-        if end <= len(data) and data[at + 7:at + 10] == b"\0\0\0" and crc(data[at + 1:end - 2] + b"\x32") == int.from_bytes(data[end - 2:end], "little"):
-            count += 1
-        at += 1
-    return count
 
 
 def main():
@@ -61,7 +43,7 @@ def main():
         begin, heard = time.monotonic(), 0
         while heard < WANTED and time.monotonic() - begin < LONGEST and board.poll() is None:
             time.sleep(0.2)
-            heard = heartbeats(serial.read_bytes()) if serial.exists() else 0
+            heard = sum(message == HEARTBEAT for _, message, _ in frames(serial.read_bytes())[0]) if serial.exists() else 0
     finally:
         board.kill()
         board.wait()

@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Random flights with a log whose queue nobody empties: what the log costs the control loop. Count the instructions
-// below Coprocessor::step, and below FlightLog::end and the recorder (docs/guides/flight_log.md).
+// Random flights without a log, with one, with a live page, or with both, whose queues nobody empties: what the log
+// costs the control loop. cost_check.py counts the instructions below counted_step.
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
+#include <string>
 
 #include "firmware/linux/flight_log/queue.hpp"
+#include "firmware/linux/live_page/feed.hpp"
+#include "firmware/linux/logging.hpp"
 #include "tests/flight_log/recorded_flight.hpp"
 #include "toolchain/sim/random_scenario.hpp"
 
 namespace {
 
 using namespace jink;
+
+constexpr std::size_t kQueueBytes = 1U << 26U;
 
 class LargeQueue final : public flightlog::Output {
 public:
@@ -25,23 +31,32 @@ public:
     }
 
 private:
-    flightlog::Queue queue_{1U << 26U};
+    flightlog::Queue queue_{kQueueBytes};
 };
 
 }  // namespace
 
 int main(int argc, char** argv)
 {
-    const int flights = argc > 1 ? std::atoi(argv[1]) : 10;
-    std::uint64_t steps = 0;
+    const std::string mode = argc > 1 ? argv[1] : "";
+    const int flights = argc > 2 ? std::atoi(argv[2]) : 3;
+    if ((mode != "none" && mode != "log" && mode != "page" && mode != "both") || flights < 1) {
+        std::fprintf(stderr, "usage: flight_log_cost none|log|page|both [FLIGHTS]\n");
+        return 2;
+    }
     LargeQueue queue;
+    livepage::Feed feed(kQueueBytes);
+    host::TwoOutputs both(queue, feed);
+    test::FlightOptions options;
+    options.without_log = mode == "none";
+    options.output = mode == "page" ? static_cast<flightlog::Output*>(&feed) : mode == "both" ? &both : nullptr;
+    options.output = options.output != nullptr ? options.output : &queue;
+    std::uint64_t steps = 0;
     for (int seed = 1; seed <= flights; ++seed) {
-        test::FlightOptions options;
-        options.output = &queue;
         steps += test::fly_recorded(sim::random_scenario(static_cast<std::uint64_t>(seed)), {}, options).steps;
     }
-    const flightlog::LogCounts counts = queue.counts();
+    const flightlog::LogCounts counts = options.output->counts();
     std::printf("%d flights, %llu steps, %u messages, %u dropped, %u bytes\n", flights,
                 static_cast<unsigned long long>(steps), counts.messages, counts.dropped, counts.peak);
-    return counts.dropped == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+    return counts.dropped == 0 && (counts.messages > 0) != options.without_log ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -155,22 +155,32 @@ TEST(HalRecord, EntriesAreReadAsWritten)
         counts.push_back(random() >> random() % 64);
         writer.count(counts.back());
     }
-    Health now{};
     std::vector<Health> healths;
-    for (int i = 0; i < 200; ++i) {
-        const Health before = now;
-        now[random() % now.size()] = random() >> random() % 64;
-        writer.health(before, now);
-        healths.push_back(now);
-    }
+    const auto change = [&](auto now, auto newest, const auto& counters) {
+        for (int i = 0; i < 200; ++i) {
+            const auto before = now;
+            for (std::size_t n = random() % 4; n > 0; --n) {
+                now.*counters[random() % counters.size()] = random() >> random() % 64;
+            }
+            now.state = random() % 3 == 0 ? newest : now.state;
+            writer.health(flightlog::differences(before, now), before, now);
+            healths.push_back(flightlog::to_numbers(now));
+        }
+    };
+    change(hal::PortHealth{}, hal::PortState::lost, flightlog::kCountersOf<hal::PortHealth>);
+    change(hal::CanHealth{}, hal::CanState::bus_off, flightlog::kCountersOf<hal::CanHealth>);
     EntryReader reader(writer.record());
     for (const std::uint64_t count : counts) {
         ASSERT_EQ(reader.count(), count);
     }
     Health read{};
-    for (const Health& health : healths) {
+    for (std::size_t i = 0; i < healths.size(); ++i) {
+        read = i == healths.size() / 2 ? Health{} : read;  // the other kind of port
         reader.health(read);
-        ASSERT_EQ(read, health);
+        ASSERT_EQ(read, healths[i]) << i;
+        ASSERT_EQ(i < healths.size() / 2 ? flightlog::to_numbers(flightlog::to_port_health(read))
+                                         : flightlog::to_numbers(flightlog::to_can_health(read)),
+                  read);
     }
     EXPECT_TRUE(reader.empty() && reader.is_good());
 }

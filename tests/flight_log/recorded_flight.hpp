@@ -81,7 +81,22 @@ struct FlightOptions {
     std::optional<files::SigningKey> key;    ///< of both ends
     BesideFlight beside;
     flightlog::Output* output = nullptr;  ///< in place of a log in memory
+    bool without_log = false;             ///< nothing is recorded
 };
+
+/// A step and its log. tests/flight_log/cost_check.py counts the instructions below this function.
+[[gnu::noinline]] inline app::StepReport counted_step(flightlog::FlightLog* log, app::Coprocessor& coprocessor,
+                                                      TimePoint now, std::int64_t took_us)
+{
+    if (log != nullptr) {
+        log->begin(now);
+    }
+    const app::StepReport report = coprocessor.step(now);
+    if (log != nullptr) {
+        log->end(report, coprocessor, now, took_us);
+    }
+    return report;
+}
 
 /// The autopilot's end signs what it sends, and the co-processor's frames are taken as they are.
 class SigningEnd {
@@ -165,9 +180,11 @@ inline RecordedFlight fly_recorded(const sim::Scenario& scenario, const sim::Tim
     }
     app::Parameters initial;
     EXPECT_EQ(initial.set_all(setup.initial), app::ParamStatus::ok);
+    hal::SerialPort& given_line = options.without_log ? cable->port() : line;
     flightlog::Assembly assembly(
-        setup, initial, {setup.on_bus ? nullptr : &line, setup.has_bus ? &can : nullptr, cloud ? &*cloud : nullptr},
-        watchdog, signing, nullptr);
+        setup, initial,
+        {setup.on_bus ? nullptr : &given_line, setup.has_bus ? &can : nullptr, cloud ? &*cloud : nullptr}, watchdog,
+        signing, nullptr);
     app::Coprocessor& coprocessor = assembly.coprocessor();
     sim::Plant plant(scenario);
     sim::Ticks ticks(timing);
@@ -188,15 +205,18 @@ inline RecordedFlight fly_recorded(const sim::Scenario& scenario, const sim::Tim
             if (options.beside) {
                 options.beside(flight.steps, now, coprocessor, log.recorder());
             }
-            log.begin(now);
-            const app::StepReport report = coprocessor.step(now);
-            log.end(report, coprocessor, now, 100 + static_cast<std::int64_t>(flight.steps % 7));
+            const app::StepReport report = counted_step(options.without_log ? nullptr : &log, coprocessor, now,
+                                                        100 + static_cast<std::int64_t>(flight.steps % 7));
             ++flight.steps;
             flight.manoeuvres += report.guidance.new_manoeuvre ? 1U : 0U;
         }
         advance(plant.now());
     }
     const TimePoint end{clock.now_us()};
+    if (options.without_log) {
+        coprocessor.shut_down(end);
+        return flight;
+    }
     log.begin_shut_down(end);
     coprocessor.shut_down(end);
     log.end_shut_down(end);

@@ -191,9 +191,14 @@ nlohmann::json sample_run()
            {"positions", way}}}},
         {"series", series},
         {"inside", {{"plan_steps", {{"count", 3}, {"mean_us", 40.0}, {"worst_us", 75.0}}}, {"first_candidate", "x"}}},
-        {"fan",
-         {{{"status", "chosen"}, {"points", {{0, 0, 30}, {5, 2, 30}, {10, 0, 30}}}},
-          {{"status", "hits_moving"}, {"points", {{0, 0, 30}, {5, -2, 30}, {10, 0, 30}}}}}}};
+        {"decisions",
+         {{{"t", 2.0},
+           {"text", "answer of method geometric"},
+           {"start", {0, 0, 30}},
+           {"own_at_closest", {10, 0, 30}},
+           {"candidates",
+            {{{"family", "smooth"}, {"plane", 0.0}, {"offset", 2.0}, {"status", "chosen"}, {"cost", 0.2}},
+             {{"family", "simple"}, {"plane", 1.5}, {"offset", -2.0}, {"status", "hits_moving"}, {"cost", 0.1}}}}}}}};
     nlohmann::json random = flight;
     random["name"] = "random_1";
     random["judge"] = {{"avoidable", true}};
@@ -244,9 +249,11 @@ TEST(Command, ReportBearsWhatIsMissingAndRefusesWhatIsNoRun)
         GTEST_SKIP() << "the viewer has not been built";
     }
     nlohmann::json bare = sample_run();
-    bare["flights"] = {nlohmann::json::object(),
-                       {{"name", "named"}, {"series", {{"t", {0, 1}}, {"separation", {nullptr, 2.0}}}}},
-                       {{"least", nullptr}, {"fan", {{{"status", "chosen"}}}}}};
+    bare["flights"] = {
+        nlohmann::json::object(),
+        {{"name", "named"}, {"series", {{"t", {0, 1}}, {"separation", {nullptr, 2.0}}}}},
+        {{"least", nullptr},
+         {"decisions", {{{"t", 1}}, {{"t", 2}, {"candidates", {{{"family", "wait"}, {"status", "chosen"}}}}}}}}};
     static_cast<void>(scratch.write("bare.json", bare.dump()));
     const Ran ran = jink(scratch, "report bare.json --out page.html");
     EXPECT_EQ(ran.status, 0) << ran.err;
@@ -277,8 +284,15 @@ TEST(Command, ReportBearsWhatIsMissingAndRefusesWhatIsNoRun)
          "flights[0].series.mode: 1 values, expected 60 as in series.t"},
         {changed("/flights/0/threats/0/positions/3", "there"), "flights[0].threats[0].positions[3]: expected a list"},
         {changed("/flights/0/threats/0/form", "cube"), "flights[0].threats[0].form: expected sphere, cylinder or box"},
-        {changed("/flights/0/fan/1/status", "maybe"),
-         "flights[0].fan[1].status: expected a candidate's status, not 'maybe'"},
+        {changed("/flights/0/decisions/0/candidates/1/status", "maybe"),
+         "flights[0].decisions[0].candidates[1].status: expected a candidate's status, not 'maybe'"},
+        {changed("/flights/0/decisions/0/candidates/1/status", "hits_"),
+         "flights[0].decisions[0].candidates[1].status: expected a candidate's status, not 'hits_'"},
+        {changed("/flights/0/decisions/0/candidates/0/family", "loop"),
+         "flights[0].decisions[0].candidates[0].family: expected a candidate's family, not 'loop'"},
+        {changed("/flights/0/decisions/0/start", {1, 2}), "flights[0].decisions[0].start: expected three numbers"},
+        {changed("/flights/0/decisions/0/t", nullptr), "flights[0].decisions[0].t: expected a time"},
+        {changed("/flights/0/series/work", {1, 2, 3}), "flights[0].series.work: 3 values, expected 60 as in series.t"},
     };
     for (const auto& c : cases) {
         static_cast<void>(scratch.write("wrong.json", c.text));

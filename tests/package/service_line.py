@@ -23,40 +23,16 @@ import tempfile
 import time
 import tty
 
-COMPONENT = 196  # MAV_COMP_ID_OBSTACLE_AVOIDANCE
-HEARTBEAT_EXTRA = 50
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from mavlink_frames import AVOIDANCE, HEARTBEAT, frames  # noqa: E402
+
 FILTER = pathlib.Path(__file__).resolve().with_name("system_call_filter.py")
 
 
 def setting(text, name):
     """Last value of a setting of a unit, or of a variable of a file for the shell."""
     return re.findall(rf"^{name}=(.*)$", text, re.M)[-1]
-
-
-def crc(data):
-    """CRC-16/MCRF4XX of MAVLink."""
-    value = 0xFFFF
-    for byte in data:
-        byte ^= value & 0xFF
-        byte = (byte ^ (byte << 4)) & 0xFF
-        value = (value >> 8) ^ (byte << 8) ^ (byte << 3) ^ (byte >> 4)
-    return value
-
-
-def has_heartbeat(stream):
-    """A whole HEARTBEAT frame of MAVLink 2 or 1 of the component."""
-    for start, byte in enumerate(stream):
-        if byte not in (0xFD, 0xFE) or len(stream) < start + 2:
-            continue
-        header = 10 if byte == 0xFD else 6
-        end = start + header + stream[start + 1]
-        frame = stream[start:end]
-        if len(stream) < end + 2 or frame[header - (4 if byte == 0xFD else 2)] != COMPONENT:
-            continue
-        number = int.from_bytes(frame[header - 3 : header], "little") if byte == 0xFD else frame[5]
-        if number == 0 and crc(frame[1:] + bytes([HEARTBEAT_EXTRA])) == int.from_bytes(stream[end : end + 2], "little"):
-            return True
-    return False
 
 
 def limits(unit):
@@ -100,7 +76,7 @@ def wait_for(process, notify, port):
                 missing -= set(notify.recv(4096).decode().split("\n"))
             else:
                 stream += os.read(port, 4096)
-        if has_heartbeat(stream):
+        if (AVOIDANCE, HEARTBEAT) in (frame[:2] for frame in frames(stream)[0]):
             missing.discard("HEARTBEAT")
     return missing
 

@@ -73,9 +73,19 @@ def check_run(page, run):
     """Candidates of every flight against the run's own words, in numbers, lines and colours."""
     for index, flight in enumerate(run["flights"]):
         page.run(f"jinkViewer.select(jinkViewer.flights[{index}], null)")
-        expected = fates([(c["status"], c["cost"] > 0) for c in flight.get("fan", [])])
-        expect(shown_fates(page) == expected, f"{flight['name']}: legend {shown_fates(page)}, expected {expected}")
-        expect(lines_by_fate(page) == expected, f"{flight['name']}: lines {lines_by_fate(page)}, expected {expected}")
+        decisions = page.run("jinkViewer.state().flight.decisions.map(d => d.time)")
+        times = [d["t"] for d in flight["decisions"]]
+        expect(len(times) == len(decisions) > 0 and all(abs(a - b) < 2e-3 for a, b in zip(times, decisions)), f"{flight['name']}: decisions {decisions}, expected {times}")
+        for decision in reversed(flight["decisions"]):  # the first one last: its colours are counted below
+            page.run(f"jinkViewer.charts.onTime({decision['t'] + 1e-3})")
+            expected = fates([(c["status"], c["cost"] > 0) for c in decision["candidates"]])
+            where = f"{flight['name']} at {decision['t']} s"
+            expect(shown_fates(page) == expected, f"{where}: legend {shown_fates(page)}, expected {expected}")
+            expect(lines_by_fate(page) == expected, f"{where}: lines {lines_by_fate(page)}, expected {expected}")
+            expect(decision["text"] in page.run("document.getElementById('decision').textContent"), f"{where}: the text is missing")
+        work = page.run("Array.from(jinkViewer.state().flight.work)")
+        expect(work == [w for w in flight["series"]["work"]], f"{flight['name']}: work units differ")
+        expect(max(w for w in work if w is not None) > 0, f"{flight['name']}: no work was done")
         found = pixels(page, COLOURS)
         expect(found["different"] > 50, f"{flight['name']}: the picture is empty")
         for fate in COLOURS:

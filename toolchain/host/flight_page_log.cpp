@@ -6,10 +6,10 @@
 #include <map>
 #include <optional>
 
-#include "core/geometric/candidate.hpp"
 #include "firmware/app/takeover.hpp"
 #include "firmware/linux/flight_log/topics.hpp"
 #include "firmware/linux/flight_log/ulog_reader.hpp"
+#include "toolchain/host/candidate_curve.hpp"
 #include "toolchain/host/flight_page.hpp"
 #include "toolchain/host/log_fields.hpp"
 #include "toolchain/host/log_summary.hpp"
@@ -22,7 +22,6 @@ using geometric::CandidateStatus;
 constexpr double kPeriod = 0.1;           // of samples [s]
 constexpr double kLongest = 24 * 3600.0;  // of a flight [s]
 constexpr double kTrackLife = 0.5;        // a track is logged every 0.2 s; without news for longer it is gone [s]
-constexpr int kCurvePoints = 24;
 
 struct Sighting {
     double time = 0.0;
@@ -168,29 +167,6 @@ void LogFlight::note_decision(const LogFields& topic, double time)
     curve_of_[number] = curve;
 }
 
-Columns3 curve_of(const geometric::CandidateShape& shape, const std::array<double, 3>& start,
-                  const std::array<double, 3>& to)
-{
-    const auto vector = [](const std::array<double, 3>& p) {
-        return Vec3(static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]));
-    };
-    Columns3 points;
-    const Vec3 direction = vector(to) - vector(start);
-    const float distance = direction.norm();
-    if (!(distance > 0.0F) || !std::isfinite(distance) || !std::isfinite(shape.plane + shape.offset)) {
-        return points;
-    }
-    const geometric::PathFrame frame = geometric::make_path_frame(vector(start), direction);
-    const float length = geometric::curve_length_x(shape.family, distance);
-    for (int k = 0; k <= kCurvePoints; ++k) {
-        const float s = length * static_cast<float>(k) / static_cast<float>(kCurvePoints);
-        const float y = geometric::curve_offset(shape, distance, s);
-        const Vec3 at = frame.origin + frame.axes * Vec3(s, y * std::cos(shape.plane), y * std::sin(shape.plane));
-        push(points, {static_cast<double>(at.x()), static_cast<double>(at.y()), static_cast<double>(at.z())});
-    }
-    return points;
-}
-
 void LogFlight::note_candidate(const LogFields& topic, double time)
 {
     const unsigned number = topic.code("decision");
@@ -212,7 +188,7 @@ void LogFlight::note_candidate(const LogFields& topic, double time)
         shape.family = static_cast<geometric::Family>(family);
         shape.plane = static_cast<float>(topic.number("plane"));
         shape.offset = static_cast<float>(topic.number("offset"));
-        candidate.points = curve_of(shape, curve.start, curve.to);
+        candidate.points = candidate_curve(shape, curve.start, curve.to);
     }
     decision(number, time).candidates.push_back(std::move(candidate));
 }

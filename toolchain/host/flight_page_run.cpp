@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Flights of jink-sim: run.json (tests/scenario/README.md describes its layout).
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <set>
 
 #include <nlohmann/json.hpp>
 
+#include "toolchain/host/candidate_curve.hpp"
 #include "toolchain/host/flight_page.hpp"
 
 namespace jink::host {
@@ -147,6 +149,8 @@ void read_series(const Node& series, PageFlight& flight)
     flight.separation = series["separation"].numbers();
     series["separation"].expect_size(flight.separation.size(), n);
     flight.separation.resize(n, kUnknown);
+    flight.work = series["work"].numbers();
+    series["work"].expect_size(flight.work.size(), n);
     const std::vector<Node> modes = series["mode"].items();
     series["mode"].expect_size(modes.size(), n);
     for (std::size_t i = 0; i < modes.size(); ++i) {
@@ -180,62 +184,70 @@ PageThreat read_threat(const Node& node, std::size_t samples)
     return threat;
 }
 
-/// The candidates of the first plan. The file does not say when that was: at the sample that lies nearest to the
-/// candidates' common start, before jink lets go of control for the first time.
-void read_decision(const Node& node, PageFlight& flight)
+Fate fate_of(const Node& status, bool has_cost, bool plan_found)
 {
-    const std::vector<Node> fan = node["fan"].items();
-    if (fan.empty()) {
-        return;
+    const std::string name = status.text();
+    if (name == "chosen") {
+        return Fate::chosen;
     }
+    if (name == "available") {
+        return Fate::clear;
+    }
+    if (name == "not_flyable") {
+        return Fate::not_flyable;
+    }
+    if (name == "hits_static" || name == "hits_moving" || name == "hits_airspace") {
+        return Fate::contact;
+    }
+    if (name != "not_evaluated") {
+        status.refuse("expected a candidate's status, not '" + name + "'");
+    }
+    return fate_of_unchecked(has_cost, plan_found, false);
+}
+
+geometric::CandidateShape shape_of(const Node& candidate)
+{
+    geometric::CandidateShape shape;
+    const std::string name = candidate["family"].text();
+    const auto* const family = std::find_if(geometric::kFamilies.begin(), geometric::kFamilies.end(),
+                                            [&](geometric::Family one) { return to_string(one) == name; });
+    if (family == geometric::kFamilies.end()) {
+        candidate["family"].refuse("expected a candidate's family, not '" + name + "'");
+    }
+    shape.family = *family;
+    shape.plane = static_cast<float>(candidate["plane"].number());
+    shape.offset = static_cast<float>(candidate["offset"].number());
+    return shape;
+}
+
+std::array<double, 3> place_of(const Node& node)
+{
+    Columns3 one;
+    node.point(one);
+    return {one.x[0], one.y[0], one.z[0]};
+}
+
+PageDecision read_decision(const Node& node)
+{
     PageDecision decision;
-    decision.text = node["inside"]["first_candidate"].text();
-    std::vector<std::string> status;
-    status.reserve(fan.size());
-    for (const Node& item : fan) {
-        status.push_back(item["status"].text());
+    decision.time = node["t"].number();
+    if (!(std::abs(decision.time) <= kMaxShown)) {
+        node["t"].refuse("expected a time");
     }
-    const bool found = std::find(status.begin(), status.end(), "chosen") != status.end();
-    for (std::size_t i = 0; i < fan.size(); ++i) {
-        PageCandidate candidate;
-        const double cost = fan[i]["cost"].number(0.0);
+    decision.text = node["text"].text();
+    const std::array<double, 3> start = place_of(node["start"]);
+    const std::array<double, 3> to = place_of(node["own_at_closest"]);
+    const std::vector<Node> candidates = node["candidates"].items();
+    const bool found = std::any_of(candidates.begin(), candidates.end(),
+                                   [](const Node& one) { return one["status"].text() == "chosen"; });
+    for (const Node& one : candidates) {
+        PageCandidate& candidate = decision.candidates.emplace_back();
+        const double cost = one["cost"].number(0.0);
         candidate.cost = cost > 0.0 ? cost : kUnknown;
-        candidate.points = fan[i]["points"].points();
-        if (status[i] == "chosen") {
-            candidate.fate = Fate::chosen;
-        } else if (status[i] == "available") {
-            candidate.fate = Fate::clear;
-        } else if (status[i] == "not_flyable") {
-            candidate.fate = Fate::not_flyable;
-        } else if (status[i].starts_with("hits_")) {
-            candidate.fate = Fate::contact;
-        } else if (status[i] == "not_evaluated") {
-            candidate.fate = fate_of_unchecked(cost > 0.0, found, false);
-        } else {
-            fan[i]["status"].refuse("expected a candidate's status, not '" + status[i] + "'");
-        }
-        decision.candidates.push_back(std::move(candidate));
+        candidate.fate = fate_of(one["status"], cost > 0.0, found);
+        candidate.points = candidate_curve(shape_of(one), start, to);
     }
-    const Columns3& first = decision.candidates.front().points;
-    double nearest = std::numeric_limits<double>::infinity();
-    bool had_control = false;
-    for (std::size_t i = 0, phase = 0; i < flight.t.size() && !first.x.empty(); ++i) {
-        while (phase + 1 < flight.phases.size() && flight.phases[phase + 1].from <= flight.t[i]) {
-            ++phase;
-        }
-        const bool in_control = !flight.phases.empty() && flight.phases[phase].in_control;
-        if (had_control && !in_control) {
-            break;
-        }
-        had_control = in_control;
-        const double distance =
-            std::hypot(flight.own.x[i] - first.x[0], flight.own.y[i] - first.y[0], flight.own.z[i] - first.z[0]);
-        if (distance < nearest) {
-            nearest = distance;
-            decision.time = flight.t[i];
-        }
-    }
-    flight.decisions.push_back(std::move(decision));
+    return decision;
 }
 
 void read_events(const Node& node, PageFlight& flight)
@@ -300,7 +312,9 @@ PageFlight read_flight(const Node& node)
     for (const Node& item : node["threats"].items()) {
         flight.threats.push_back(read_threat(item, flight.t.size()));
     }
-    read_decision(node, flight);
+    for (const Node& item : node["decisions"].items()) {
+        flight.decisions.push_back(read_decision(item));
+    }
     read_events(node, flight);
     return flight;
 }

@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <memory>
 #include <string>
-#include <thread>
 
 #include "toolchain/host/commands.hpp"
 #include "toolchain/host/tune_study.hpp"
@@ -70,7 +69,7 @@ void run_tune(const TuneOptions& options)
 {
     TuneSetup setup = options.setup;
     setup.out = options.out;
-    setup.threads = options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
+    setup.threads = options.threads;
     std::vector<Tried> tried = fly_combinations(
         setup, [](std::size_t i, std::size_t all) { std::fprintf(stderr, "combination %zu of %zu\n", i, all); });
     const auto found = std::find_if(tried.begin(), tried.end(), [](const Tried& one) {

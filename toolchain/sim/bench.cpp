@@ -7,7 +7,7 @@
 #include "firmware/app/reach_sets.hpp"
 #include "firmware/app/work_rate.hpp"
 #include "firmware/vehicles/default/reach_sets_reduced.hpp"
-#include "toolchain/sim/fan.hpp"
+#include "toolchain/sim/decision_at.hpp"
 
 namespace jink::sim {
 namespace {
@@ -39,7 +39,7 @@ app::Parameters parameters_of(const BenchSetup& setup)
 Bench::Bench(hal::SerialPort& port, hal::Watchdog& watchdog, const BenchSetup& setup)
     : endpoint_({.system_id = setup.system}),
       coprocessor_(std::make_unique<app::Coprocessor>(endpoint_, port, watchdog, parameters_of(setup), setup.bus)),
-      planner_(setup.planner)
+      planner_(setup.planner), start_(setup.start)
 {
     if (setup.board.clock != 0) {
         if (setup.cloud != nullptr) {
@@ -80,11 +80,23 @@ void Bench::step(TimePoint now)
         plan_steps_.note(took);
         plan_steps_.keep(took);
     }
-    const bool planned = coprocessor_->supervisor_diagnostics().plans != plans;
-    const bool succeeded = coprocessor_->supervisor_diagnostics().plans_found != found;
-    if ((succeeded && !found_) || (planned && fan_.empty())) {
-        fan_ = fan_of(*coprocessor_, report, first_candidate_);
-        found_ = succeeded;
+    take_notes(report, now, coprocessor_->supervisor_diagnostics().plans != plans,
+               coprocessor_->supervisor_diagnostics().plans_found != found);
+}
+
+void Bench::take_notes(const app::StepReport& report, TimePoint now, bool planned, bool found)
+{
+    constexpr double kMicro = 1e-6;
+    const double time = static_cast<double>(now.us - start_.us) * kMicro;
+    work_.push_back({time, report.work});
+    if (found && !found_) {
+        first_candidate_ = chosen_candidate(*coprocessor_);
+        found_ = true;
+    }
+    if (report.guidance.new_manoeuvre) {
+        decisions_.push_back(decision_at(*coprocessor_, report, time));
+    } else if (planned && !first_plan_) {
+        first_plan_ = decision_at(*coprocessor_, report, time);
     }
 }
 
@@ -125,7 +137,11 @@ Inside Bench::inside() const
     in.inbox_full = l.inbox_full;
     in.outbox_full = l.outbox_full;
     in.first_candidate = first_candidate_;
-    in.fan = fan_;
+    in.decisions = decisions_;
+    if (decisions_.empty() && first_plan_) {
+        in.decisions.push_back(*first_plan_);
+    }
+    in.work = work_;
     return in;
 }
 

@@ -66,6 +66,7 @@ struct BenchSetup {
     link::SensorBus* bus = nullptr;    ///< outlives the bench
     hal::SerialPort* cloud = nullptr;  ///< a LiDAR's line; outlives the bench
     Board board;
+    TimePoint start{0};  ///< time 0 of Inside::decisions and Inside::work on its clock
 };
 
 /// The co-processor in this process, with a stopwatch.
@@ -104,9 +105,14 @@ private:
     AnswerCounter to_answer_;
     Stopwatch steps_;
     Stopwatch plan_steps_;
+    void take_notes(const app::StepReport& report, TimePoint now, bool planned, bool found);
+
+    TimePoint start_;
     std::string first_candidate_;
-    std::vector<FanCurve> fan_;
     bool found_ = false;
+    std::vector<DecisionAt> decisions_;
+    std::optional<DecisionAt> first_plan_;
+    std::vector<WorkAt> work_;
     std::optional<Vec> chosen_;
 };
 

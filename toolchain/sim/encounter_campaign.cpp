@@ -5,16 +5,15 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <exception>
 #include <map>
 #include <mutex>
 #include <set>
 #include <sstream>
-#include <thread>
 
 #include "toolchain/sim/encounter_summary.hpp"
 #include "toolchain/sim/in_process.hpp"
 #include "toolchain/sim/input_file.hpp"
+#include "toolchain/sim/parallel.hpp"
 #include "toolchain/sim/scenario_writer.hpp"
 #include "toolchain/sim/source_digest.hpp"
 
@@ -199,40 +198,13 @@ void fly_missing(const BlockFolder& folder, const EncounterSetup& setup, unsigne
                  const std::function<void(std::size_t done, std::size_t all)>& done)
 {
     const std::vector<std::size_t> missing = folder.missing(setup.blocks());
-    std::size_t begun = 0;
     std::size_t finished = 0;
-    std::exception_ptr failure;
     std::mutex mutex;
-    const auto work = [&] {
-        bool busy = false;
-        try {
-            fly_blocks(
-                folder, setup,
-                [&]() -> std::optional<std::size_t> {
-                    const std::lock_guard lock(mutex);
-                    if (busy) {
-                        done(++finished, missing.size());
-                    }
-                    const std::size_t at = failure ? missing.size() : begun++;
-                    busy = at < missing.size();
-                    return busy ? std::optional(missing[at]) : std::nullopt;
-                },
-                [] {});
-        } catch (...) {
-            const std::lock_guard lock(mutex);
-            failure = std::current_exception();
-        }
-    };
-    std::vector<std::thread> workers;
-    for (unsigned i = 0; i < threads; ++i) {
-        workers.emplace_back(work);
-    }
-    for (std::thread& worker : workers) {
-        worker.join();
-    }
-    if (failure) {
-        std::rethrow_exception(failure);
-    }
+    in_parallel(missing.size(), threads, [&](std::size_t i) {
+        folder.write(missing[i], fly_block(setup, missing[i], [] {}));
+        const std::lock_guard lock(mutex);
+        done(++finished, missing.size());
+    });
 }
 
 std::vector<EncounterResult> read_results(const BlockFolder& folder, const FolderSetup& setup)

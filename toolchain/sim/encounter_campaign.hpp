@@ -59,7 +59,7 @@ struct FolderSetup {
 void fly_blocks(const BlockFolder& folder, const EncounterSetup& setup,
                 const std::function<std::optional<std::size_t>()>& next, const std::function<void()>& pause);
 
-/// Flies the missing blocks in order with `threads` threads of this process.
+/// Flies the missing blocks in order with `threads` threads of this process; 0: one to a core.
 /// @param done  called after each block with the number of flown blocks, by one thread at a time
 void fly_missing(const BlockFolder& folder, const EncounterSetup& setup, unsigned threads,
                  const std::function<void(std::size_t done, std::size_t all)>& done);

@@ -5,18 +5,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/base/random.hpp"
 #include "toolchain/sim/random_scenario.hpp"
+#include "toolchain/sim/uniform.hpp"
 
 namespace jink::sim {
 namespace {
 
 constexpr double kPiece = 0.2;  ///< of a motion that is not straight [s]
-
-double uniform(Random& random, double low, double high)
-{
-    return low + (high - low) * static_cast<double>(random.uniform());
-}
 
 double either_sign(Random& random) { return random.below(2) == 0 ? -1.0 : 1.0; }
 

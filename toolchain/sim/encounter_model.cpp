@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "toolchain/sim/input_file.hpp"
+#include "toolchain/sim/uniform.hpp"
 
 namespace jink::sim {
 namespace {
@@ -249,7 +250,7 @@ double EncounterModel::value_in(Random& random, std::size_t variable, std::size_
 {
     const double low = edges_[variable][bin];
     const double high = edges_[variable][bin + 1];
-    const double value = low + (high - low) * static_cast<double>(random.uniform());
+    const double value = uniform(random, low, high);
     return low < 0.0 && high > 0.0 ? 0.0 : value;
 }
 

@@ -21,11 +21,13 @@ using Value = std::function<double(const EncounterResult&)>;
 constexpr std::size_t kWorst = 10;
 constexpr unsigned kMaxIntruders = 8;
 
-template <class... Values>
-void line(std::string& text, const char* format, Values... values)
+void line(std::string& text, std::string_view whole) { text.append(whole).append("\n"); }
+
+template <class First, class... Values>
+void line(std::string& text, const char* format, First first, Values... values)
 {
     std::array<char, 400> buffer{};
-    const int n = std::snprintf(buffer.data(), buffer.size(), format, values...);
+    const int n = std::snprintf(buffer.data(), buffer.size(), format, first, values...);
     text.append(buffer.data(), std::min(static_cast<std::size_t>(n), buffer.size() - 1)).append("\n");
 }
 
@@ -55,7 +57,7 @@ void put_share(std::string& text, const char* what, std::size_t count, std::size
 
 void put_outcomes(std::string& text, const Results& results)
 {
-    line(text, "Outcomes: count, share, 95 %% interval (Wilson; rule of three at none and at all)");
+    line(text, "Outcomes: count, share, 95 % interval (Wilson; rule of three at none and at all)");
     for (const Outcome outcome :
          {Outcome::clear, Outcome::avoided, Outcome::braked, Outcome::breach, Outcome::collision, Outcome::failed}) {
         put_share(text, std::string(to_string(outcome)).c_str(),
@@ -213,7 +215,7 @@ const char* verdict_of(const EncounterResult& r)
 
 void put_list(std::string& text, const char* title, const Results& results)
 {
-    line(text, "\n%s", title);
+    line(text, std::string("\n") + title);
     line(text, "  %20s %9s %-10s %10s %8s %8s %6s %6s %6s %6s %6s %5s  %s", "seed", "intruders", "outcome",
          "separation", "at [s]", "told [s]", "keep", "later", "quiet", "same", "chang.", "ctrl", "judge");
     for (const EncounterResult& r : results) {

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <iostream>
-#include <thread>
 
 #include <CLI/CLI.hpp>
 
@@ -118,9 +117,8 @@ int run_encounters(const EncountersOptions& options)
     const EncounterSetup setup = setup_of(options);
     BlockFolder folder(options.out);
     folder.claim(setup.manifest());
-    const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
     const auto began = std::chrono::steady_clock::now();
-    fly_missing(folder, setup, options.threads > 0 ? options.threads : cores, [](std::size_t done, std::size_t all) {
+    fly_missing(folder, setup, options.threads, [](std::size_t done, std::size_t all) {
         std::cerr << "block " << done << " of " << all << " that were missing\n";
     });
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;

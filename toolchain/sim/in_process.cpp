@@ -122,7 +122,11 @@ Record fly_in_process(const Scenario& given, const Timing& timing, std::ostream*
     Tap tap(cable->port(), steps, scenario.board.clock);
     const std::unique_ptr<Lidar> lidar = lidar_of(scenario);
     Bench bench(tap, watchdog,
-                {.planner = scenario.planner, .parameters = {}, .cloud = lidar.get(), .board = scenario.board});
+                {.planner = scenario.planner,
+                 .parameters = {},
+                 .cloud = lidar.get(),
+                 .board = scenario.board,
+                 .start = {kClockStart}});
     return fly(scenario, timing, clock, *cable, bench, tap, lidar.get());
 }
 
@@ -143,7 +147,8 @@ Record fly_through_tunnel(const Scenario& scenario)
                  .parameters = {},
                  .bus = &line->bus(),
                  .cloud = lidar.get(),
-                 .board = scenario.board});
+                 .board = scenario.board,
+                 .start = {kClockStart}});
     Record record = fly(scenario, Timing{}, clock, *line, bench, tap, lidar.get());
     record.transport = "tunnel";
     return record;

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <thread>
 
 #include <CLI/CLI.hpp>
 
@@ -17,6 +16,7 @@
 #include "toolchain/sim/in_process.hpp"
 #include "toolchain/sim/manned_command.hpp"
 #include "toolchain/sim/matrix_command.hpp"
+#include "toolchain/sim/parallel.hpp"
 #include "toolchain/sim/phases_command.hpp"
 #include "toolchain/sim/random_scenario.hpp"
 #include "toolchain/sim/recorded_command.hpp"
@@ -100,23 +100,14 @@ Record fly_recorded(const Scenario& scenario, const std::string& folder)
     return record;
 }
 
-/// Random flights in process, on `threads` threads, in the order of their seeds.
-std::vector<ReportedFlight> fly_random(std::uint64_t first, unsigned count, unsigned threads)
+/// Random flights in process, two at once, in the order of their seeds.
+std::vector<ReportedFlight> fly_random(std::uint64_t first, unsigned count)
 {
     std::vector<ReportedFlight> flights(count);
-    std::atomic<unsigned> next{0};
-    std::vector<std::thread> workers;
-    for (unsigned i = 0; i < threads; ++i) {
-        workers.emplace_back([&] {
-            for (unsigned k = next++; k < count; k = next++) {
-                const Scenario scenario = random_scenario(first + k);
-                flights[k] = report_on(scenario, fly_in_process(scenario), true);
-            }
-        });
-    }
-    for (std::thread& worker : workers) {
-        worker.join();
-    }
+    in_parallel(flights.size(), 2, [&](std::size_t k) {
+        const Scenario scenario = random_scenario(first + k);
+        flights[k] = report_on(scenario, fly_in_process(scenario), true);
+    });
     return flights;
 }
 
@@ -229,16 +220,17 @@ int demo(const Options& options)
     std::vector<ReportedFlight> flights;
     for (std::size_t i = 0; i < scenarios.size(); ++i) {
         ReportedFlight flight = report_on(scenarios[i], std::move(records[i]), false);
-        // The candidates are only available in process.
+        // Candidates and work units are only available in process.
         Record inside = fly_in_process(scenarios[i]);
         if (flight.record.inside && inside.inside) {
-            flight.record.inside->fan = inside.inside->fan;
+            flight.record.inside->decisions = std::move(inside.inside->decisions);
+            flight.record.inside->work = std::move(inside.inside->work);
             flight.record.inside->first_candidate = inside.inside->first_candidate;
         }
         flights.push_back(std::move(flight));
     }
     std::cout << options.count << " random encounters in process ..." << std::endl;
-    for (ReportedFlight& flight : fly_random(options.seed, options.count, 2)) {
+    for (ReportedFlight& flight : fly_random(options.seed, options.count)) {
         flights.push_back(std::move(flight));
     }
     const int result = finish(options, flights);
@@ -247,7 +239,7 @@ int demo(const Options& options)
     return result;
 }
 
-int random(const Options& options) { return finish(options, fly_random(options.seed, options.count, 2)); }
+int random(const Options& options) { return finish(options, fly_random(options.seed, options.count)); }
 
 /// Of each clock [MHz]: instructions of a tick, work units of a step, and of those of its slice.
 int rates(const std::vector<unsigned>& clocks)

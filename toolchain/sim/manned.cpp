@@ -9,6 +9,7 @@
 #include "toolchain/sim/in_process.hpp"
 #include "toolchain/sim/random_scenario.hpp"
 #include "toolchain/sim/scenario_file.hpp"
+#include "toolchain/sim/uniform.hpp"
 
 namespace jink::sim {
 namespace {
@@ -21,11 +22,6 @@ constexpr double kSensorRange = 2000.0;
 constexpr double kJudgeStep = 0.1;  ///< [s]
 constexpr Volume kLargest{1.5 * kWellClearVolume.radius, 1.5 * kWellClearVolume.height};
 
-double between(Random& random, double low, double high)
-{
-    return low + (high - low) * static_cast<double>(random.uniform());
-}
-
 double size_of(const Volume& v) { return v.radius * v.radius * v.height; }
 
 bool is_inside(const Volume& v, const Vec& gap)
@@ -37,9 +33,9 @@ bool is_inside(const Volume& v, const Vec& gap)
 Vec draw_between(Random& random, const Volume& outer, const Volume& inner)
 {
     for (;;) {
-        const double angle = between(random, -std::numbers::pi, std::numbers::pi);
+        const double angle = uniform(random, -std::numbers::pi, std::numbers::pi);
         const double level = outer.radius * std::sqrt(static_cast<double>(random.uniform()));
-        const Vec gap(level * std::cos(angle), level * std::sin(angle), between(random, -outer.height, outer.height));
+        const Vec gap(level * std::cos(angle), level * std::sin(angle), uniform(random, -outer.height, outer.height));
         if (!is_inside(inner, gap)) {
             return gap;
         }
@@ -192,7 +188,7 @@ MannedEncounter manned_encounter(const EncounterModel& model, MannedSensor senso
     bool found = false;
     for (int i = 0; i < kTries && !found; ++i) {
         const ModelTrack track = model.sample(random, kTrackSeconds);
-        aircraft = flown_track(track, between(random, -std::numbers::pi, std::numbers::pi));
+        aircraft = flown_track(track, uniform(random, -std::numbers::pi, std::numbers::pi));
         meeting = aircraft.position_at(kMeetAfter) + gap;
         found = meeting.z() >= kLowest && meeting.z() <= kHighest;
     }
@@ -203,7 +199,7 @@ MannedEncounter manned_encounter(const EncounterModel& model, MannedSensor senso
     s.title = "a manned aircraft, seed " + std::to_string(seed);
     s.seed = seed;
     s.stack = random.below(2) == 0 ? Stack::ardupilot : Stack::px4;
-    s.vehicle.cruise = between(random, 5.0, 15.0);
+    s.vehicle.cruise = uniform(random, 5.0, 15.0);
     s.start_velocity = Vec(s.vehicle.cruise, 0.0, 0.0);
     s.start_position = Vec(0.0, 0.0, meeting.z());
     s.duration = static_cast<double>(kTrackSeconds);

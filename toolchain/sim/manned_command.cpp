@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "toolchain/sim/manned_command.hpp"
 
-#include <atomic>
 #include <cstdlib>
 #include <filesystem>
 #include <iomanip>
 #include <ostream>
-#include <thread>
 
 #include <CLI/CLI.hpp>
 
 #include "toolchain/sim/encounter_campaign.hpp"
 #include "toolchain/sim/encounters_command.hpp"
+#include "toolchain/sim/parallel.hpp"
 
 namespace jink::sim {
 namespace {
@@ -21,31 +20,9 @@ std::vector<MannedResult> fly_all(const EncounterModel& model, const MannedOptio
 {
     const MannedSensor sensor = options.sensor == "adsb" ? MannedSensor::adsb : MannedSensor::range;
     std::vector<MannedResult> results(options.count);
-    std::atomic<std::size_t> next = 0;
-    std::exception_ptr failure;
-    std::atomic<bool> failed = false;
-    const auto work = [&] {
-        for (std::size_t i = next++; i < results.size() && !failed; i = next++) {
-            try {
-                results[i] = fly_manned(model, sensor, options.from + i, parameters, options.board);
-            } catch (...) {
-                if (!failed.exchange(true)) {
-                    failure = std::current_exception();
-                }
-            }
-        }
-    };
-    const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
-    std::vector<std::thread> threads;
-    for (unsigned i = 0; i < (options.threads > 0 ? options.threads : cores); ++i) {
-        threads.emplace_back(work);
-    }
-    for (std::thread& thread : threads) {
-        thread.join();
-    }
-    if (failure) {
-        std::rethrow_exception(failure);
-    }
+    in_parallel(results.size(), options.threads, [&](std::size_t i) {
+        results[i] = fly_manned(model, sensor, options.from + i, parameters, options.board);
+    });
     return results;
 }
 

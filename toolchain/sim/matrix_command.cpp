@@ -2,16 +2,15 @@
 #include "toolchain/sim/matrix_command.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <iomanip>
 #include <ostream>
-#include <thread>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "toolchain/sim/in_process.hpp"
 #include "toolchain/sim/matrix.hpp"
+#include "toolchain/sim/parallel.hpp"
 
 namespace jink::sim {
 namespace {
@@ -55,20 +54,10 @@ std::vector<Cell> wanted_cells(const MatrixOptions& options)
 
 void fly_cells(const MatrixOptions& options, std::vector<Cell>& cells)
 {
-    std::atomic<std::size_t> next{0};
-    std::vector<std::thread> workers;
-    for (unsigned i = 0; i < options.threads; ++i) {
-        workers.emplace_back([&] {
-            for (std::size_t k = next++; k < cells.size(); k = next++) {
-                const Cell& c = cells[k];
-                cells[k] =
-                    fly_cell(c.flyer, c.behaviour, c.meeting, options.from, options.count, conditions_of(options));
-            }
-        });
-    }
-    for (std::thread& worker : workers) {
-        worker.join();
-    }
+    in_parallel(cells.size(), options.threads, [&](std::size_t k) {
+        const Cell& c = cells[k];
+        cells[k] = fly_cell(c.flyer, c.behaviour, c.meeting, options.from, options.count, conditions_of(options));
+    });
 }
 
 void add(const Cell& cell, Cell& sum)

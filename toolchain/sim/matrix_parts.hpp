@@ -4,17 +4,12 @@
 #include <cmath>
 #include <vector>
 
-#include "core/base/random.hpp"
 #include "toolchain/sim/matrix.hpp"
+#include "toolchain/sim/uniform.hpp"
 
 // Common parts of the matrix's multirotor and plane flights. Private to the matrix.
 
 namespace jink::sim::detail {
-
-inline double between(Random& random, double low, double high)
-{
-    return low + (high - low) * static_cast<double>(random.uniform());
-}
 
 /// Places about home, with x along a random course.
 class Field {

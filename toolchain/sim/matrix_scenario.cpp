@@ -42,7 +42,6 @@ void set_vehicle(Scenario& s, Flyer flyer)
                     {"VEH_LAG", px4 ? 0.36 : 0.55}};
 }
 
-using detail::between;
 using detail::Field;
 using detail::Items;
 using detail::Times;
@@ -170,19 +169,19 @@ Intruders intruders_of(Flyer flyer)
 Vec velocity_of(Meeting meeting, const Intruders& kind, const Vec& own, double height, double seen_before,
                 Random& random)
 {
-    const double course = between(random, -std::numbers::pi, std::numbers::pi);
+    const double course = uniform(random, -std::numbers::pi, std::numbers::pi);
     const double own_speed = level(own).norm();
     const Vec forward = own_speed > 0.5 ? Vec(level(own) / own_speed) : Vec(std::cos(course), std::sin(course), 0.0);
-    const double speed = between(random, kind.slowest, kind.fastest);
+    const double speed = uniform(random, kind.slowest, kind.fastest);
     switch (meeting) {
     case Meeting::head_on: return -forward * speed;
     case Meeting::from_left: return turned(forward, -0.5 * std::numbers::pi) * speed;
     case Meeting::from_right: return turned(forward, 0.5 * std::numbers::pi) * speed;
-    case Meeting::overtaking: return forward * (own_speed + between(random, kind.overtakes_by, kind.overtakes_at));
-    case Meeting::from_above: return turned(forward, course) * speed + Vec(0.0, 0.0, -between(random, 1.0, 3.0));
+    case Meeting::overtaking: return forward * (own_speed + uniform(random, kind.overtakes_by, kind.overtakes_at));
+    case Meeting::from_above: return turned(forward, course) * speed + Vec(0.0, 0.0, -uniform(random, 1.0, 3.0));
     case Meeting::from_below:
         return turned(forward, course) * speed +
-               Vec(0.0, 0.0, std::min(between(random, 1.0, 3.0), std::max(0.2, (height - 2.0) / seen_before)));
+               Vec(0.0, 0.0, std::min(uniform(random, 1.0, 3.0), std::max(0.2, (height - 2.0) / seen_before)));
     case Meeting::at_turn: break;
     }
     return turned(forward, course) * speed;
@@ -235,9 +234,9 @@ Nominal nominal_flight(Flyer flyer, Behaviour behaviour, std::uint64_t seed)
     } else {
         set_vehicle(s, flyer);
     }
-    const double bearing = between(random, -std::numbers::pi, std::numbers::pi);
-    s.home = between(random, 20.0, 60.0) * Vec(std::cos(bearing), std::sin(bearing), 0.0) + Vec(0.0, 0.0, kHomeHeight);
-    const Field field(s.home, between(random, -std::numbers::pi, std::numbers::pi), plane ? kPlaneHeight : kHeight);
+    const double bearing = uniform(random, -std::numbers::pi, std::numbers::pi);
+    s.home = uniform(random, 20.0, 60.0) * Vec(std::cos(bearing), std::sin(bearing), 0.0) + Vec(0.0, 0.0, kHomeHeight);
+    const Field field(s.home, uniform(random, -std::numbers::pi, std::numbers::pi), plane ? kPlaneHeight : kHeight);
     s.start_position = field.at(0, 0);
     s.start_velocity = Vec::Zero();
     NominalFlight flight;
@@ -251,7 +250,7 @@ Nominal nominal_flight(Flyer flyer, Behaviour behaviour, std::uint64_t seed)
     } else {
         times = lay_out_other(behaviour, field, s, flight);
     }
-    nominal.meets_at = between(random, times.from, times.to);
+    nominal.meets_at = uniform(random, times.from, times.to);
     s.to_goal = is_mission(behaviour);
     s.duration = s.to_goal ? plane ? kPlaneMissionTime : kMissionTime : nominal.meets_at + kAfterwards;
     const Items& last = flight.uploaded.empty() ? flight.items : flight.uploaded;
@@ -283,19 +282,19 @@ Scenario matrix_scenario(Flyer flyer, Behaviour behaviour, Meeting meeting, std:
     Random random(seed * 2147483647U + static_cast<std::uint64_t>(behaviour) * 101U +
                   static_cast<std::uint64_t>(meeting) * 11U + 5U);
     const Intruders kind = intruders_of(flyer);
-    const double seen_before = std::min(meets_at, between(random, kind.seen_late, kind.seen_early));
+    const double seen_before = std::min(meets_at, uniform(random, kind.seen_late, kind.seen_early));
     Threat threat;
     threat.name = "intruder";
     threat.radius = kind.radius;
     const Vec velocity = velocity_of(meeting, kind, own.velocity, own.position.z() - s.home.z(), seen_before, random);
-    const Vec miss(between(random, -0.2, 0.2), between(random, -0.2, 0.2), between(random, -0.2, 0.2));
+    const Vec miss(uniform(random, -0.2, 0.2), uniform(random, -0.2, 0.2), uniform(random, -0.2, 0.2));
     const Vec place = own.position + miss;
     threat.velocity = velocity;
     threat.position = place - velocity * meets_at;
     if (meeting == Meeting::at_turn) {
         constexpr double kTurnsBefore = 6.0;
         const double turns_at = meets_at - std::min(kTurnsBefore, 0.7 * meets_at);
-        const double angle = between(random, 0.6, 1.2);
+        const double angle = uniform(random, 0.6, 1.2);
         threat.velocity = turned(velocity, random.below(2) == 0 ? angle : -angle);
         threat.position = place - velocity * (meets_at - turns_at) - threat.velocity * turns_at;
         threat.turns = {{turns_at, velocity}};

@@ -4,18 +4,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/base/random.hpp"
 #include "toolchain/sim/scenario_file.hpp"
+#include "toolchain/sim/uniform.hpp"
 
 namespace jink::sim {
 namespace {
 
 constexpr double kHeight = 40.0;
-
-double uniform(Random& random, double low, double high)
-{
-    return low + (high - low) * static_cast<double>(random.uniform());
-}
 
 Vec any_direction(Random& random)
 {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/geometric/candidate.hpp"
 #include "toolchain/sim/autopilot.hpp"
 #include "toolchain/sim/side_log.hpp"
 
@@ -23,11 +24,19 @@ struct Sample {
     int jink_state = 0;       ///< last received MAV_STATE
 };
 
-/// One candidate of a plan, for plotting the fan.
-struct FanCurve {
-    std::vector<Vec> points;
-    std::string status;
-    double cost = 0.0;
+/// A new manoeuvre, and the candidates of the geometric planner's last plan then, as in a flight log.
+struct DecisionAt {
+    double time = 0.0;
+    std::string text;  ///< the method whose answer is flown, and the chosen candidate in words
+    Vec start = Vec::Zero();
+    std::optional<Vec> own_at_closest;  ///< at the predicted closest approach, towards which curves lie
+    std::vector<geometric::Candidate> candidates;
+};
+
+/// Work units of one step.
+struct WorkAt {
+    double time = 0.0;
+    std::uint32_t work = 0;
 };
 
 /// Wall time of a kind of call [us].
@@ -58,7 +67,9 @@ struct Inside {
     unsigned tracks_refused = 0, track_jumps = 0, frames_refused = 0, not_finite = 0, stale_stamp = 0, inbox_full = 0,
              outbox_full = 0;
     std::string first_candidate;  ///< of the first plan found; empty: none was
-    std::vector<FanCurve> fan;    ///< of the first plan found, else of the first plan tried
+    /// In process alone. Without a new manoeuvre: the first plan tried, if there was one.
+    std::vector<DecisionAt> decisions;
+    std::vector<WorkAt> work;  ///< in process alone
 };
 
 /// The record of a flight.

@@ -249,18 +249,4 @@ void replay(std::span<const WireRecord> records, const app::Parameters& paramete
     }
 }
 
-std::string_view name_of(app::Control control) noexcept
-{
-    switch (control) {
-    case app::Control::autopilot: return "autopilot";
-    case app::Control::announcing: return "announcing";
-    case app::Control::requesting: return "requesting";
-    case app::Control::ours: return "ours";
-    case app::Control::returning: return "returning";
-    case app::Control::refused: return "refused";
-    case app::Control::overruled: return "overruled";
-    }
-    return "unknown";
-}
-
 }  // namespace jink::sim

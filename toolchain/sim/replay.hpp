@@ -120,7 +120,6 @@ private:
 void replay(std::span<const WireRecord> records, const app::Parameters& parameters,
             const std::function<void(const Belief&)>& each_second);
 
-[[nodiscard]] std::string_view name_of(app::Control control) noexcept;
 /// One JSON object, without the end of the line; keys as docs/evidence/recordings.md lists them.
 [[nodiscard]] std::string to_json(const Belief& belief);
 /// One line for people, without its end.

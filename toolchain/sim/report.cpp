@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "toolchain/sim/decision_at.hpp"
 #include "toolchain/sim/in_process.hpp"
 
 namespace jink::sim {
@@ -145,17 +146,47 @@ Json inside_of(const Inside& in, bool machine_independent)
     return j;
 }
 
-Json fan_of_record(const Inside& in)
+Json json(const geometric::Candidate& candidate)
 {
-    Json fan = Json::array();
-    for (const FanCurve& curve : in.fan) {
-        Json points = Json::array();
-        for (const Vec& p : curve.points) {
-            points.push_back(json(p));
+    return {{"family", to_string(candidate.shape.family)},
+            {"plane", rounded(static_cast<double>(candidate.shape.plane))},
+            {"offset", rounded(static_cast<double>(candidate.shape.offset))},
+            {"status", status_name(candidate.status)},
+            {"cost", rounded(static_cast<double>(candidate.total))}};
+}
+
+Json decisions_of(const Inside& in)
+{
+    Json decisions = Json::array();
+    for (const DecisionAt& decision : in.decisions) {
+        Json candidates = Json::array();
+        for (const geometric::Candidate& candidate : decision.candidates) {
+            candidates.push_back(json(candidate));
         }
-        fan.push_back({{"status", curve.status}, {"cost", rounded(curve.cost)}, {"points", points}});
+        decisions.push_back(
+            {{"t", rounded(decision.time)},
+             {"text", decision.text},
+             {"start", json(decision.start)},
+             {"own_at_closest", decision.own_at_closest ? json(*decision.own_at_closest) : Json(nullptr)},
+             {"candidates", candidates}});
     }
-    return fan;
+    return decisions;
+}
+
+/// The most of a step since the sample before; null: no step.
+Json work_of(const Record& record)
+{
+    Json column = Json::array();
+    auto step = record.inside->work.begin();
+    for (std::size_t i = 0; i < record.samples.size(); i += kStride) {
+        constexpr double kRounding = 1e-9;
+        Json most = nullptr;
+        for (; step != record.inside->work.end() && step->time <= record.samples[i].time + kRounding; ++step) {
+            most = most.is_null() ? step->work : std::max(most.get<std::uint32_t>(), step->work);
+        }
+        column.push_back(most);
+    }
+    return column;
 }
 
 Json json(const ReportedFlight& flight, bool machine_independent)
@@ -218,7 +249,10 @@ Json json(const ReportedFlight& flight, bool machine_independent)
     j["series"] = series(r);
     if (r.inside) {
         j["inside"] = inside_of(*r.inside, machine_independent);
-        j["fan"] = fan_of_record(*r.inside);
+        j["decisions"] = decisions_of(*r.inside);
+        if (!r.inside->work.empty()) {
+            j["series"]["work"] = work_of(r);
+        }
     }
     return j;
 }
@@ -297,7 +331,7 @@ std::string run_text(const std::vector<ReportedFlight>& flights, bool machine_in
         all.push_back(json(flight, machine_independent));
     }
     const Json run{{"format", "jink-sim run"},
-                   {"version", 1},
+                   {"version", 2},
                    {"units", "metres, seconds, metres per second; x east, y north, z up from home"},
                    {"world_step", to_seconds(kStep)},
                    {"flights", all}};

@@ -2,21 +2,19 @@
 #include "toolchain/sim/swarm_command.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cstdlib>
-#include <exception>
 #include <fstream>
 #include <functional>
 #include <iomanip>
 #include <iostream>
 #include <sstream>
 #include <stdexcept>
-#include <thread>
 
 #include <CLI/CLI.hpp>
 
 #include "toolchain/sim/encounter_campaign.hpp"
 #include "toolchain/sim/encounters_command.hpp"
+#include "toolchain/sim/parallel.hpp"
 
 namespace jink::sim {
 namespace {
@@ -54,33 +52,12 @@ SwarmSetup setup_of(const SwarmOptions& options)
     return setup;
 }
 
-/// Flies on several threads; results are in the order of the seeds.
-std::vector<SwarmResult> fly_all(const SwarmSetup& setup, const SwarmOptions& options, unsigned threads)
+/// Results are in the order of the seeds.
+std::vector<SwarmResult> fly_all(const SwarmSetup& setup, const SwarmOptions& options)
 {
     std::vector<SwarmResult> results(options.count);
-    std::atomic<unsigned> next{0};
-    std::exception_ptr failure;
-    std::atomic<bool> failed{false};
-    std::vector<std::thread> workers;
-    for (unsigned i = 0; i < threads; ++i) {
-        workers.emplace_back([&] {
-            for (unsigned k = next++; k < options.count && !failed; k = next++) {
-                try {
-                    results[k] = fly_swarm(setup, options.seed + k, options.out);
-                } catch (...) {
-                    if (!failed.exchange(true)) {
-                        failure = std::current_exception();
-                    }
-                }
-            }
-        });
-    }
-    for (std::thread& worker : workers) {
-        worker.join();
-    }
-    if (failure) {
-        std::rethrow_exception(failure);
-    }
+    in_parallel(results.size(), options.threads,
+                [&](std::size_t k) { results[k] = fly_swarm(setup, options.seed + k, options.out); });
     return results;
 }
 
@@ -200,10 +177,8 @@ int run_swarm(const SwarmOptions& options)
     if (!options.out.empty()) {
         std::filesystem::create_directories(options.out);
     }
-    const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
     const std::vector<SwarmResult> results =
-        options.daemon ? fly_daemons_one_by_one(setup, options)
-                       : fly_all(setup, options, options.threads > 0 ? options.threads : cores);
+        options.daemon ? fly_daemons_one_by_one(setup, options) : fly_all(setup, options);
     std::ostringstream text;
     for (const SwarmResult& result : results) {
         text << to_line(result) << "\n";

@@ -3,8 +3,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "core/base/random.hpp"
 #include "toolchain/sim/swarm.hpp"
+#include "toolchain/sim/uniform.hpp"
 
 namespace jink::sim {
 namespace {
@@ -14,11 +14,6 @@ constexpr double kClearStart = 3.0;
 /// An obstacle's speed, as a share of the vehicles' cruise speed.
 constexpr double kSlowest = 0.2;
 constexpr double kFastest = 0.6;
-
-double drawn(Random& random, double low, double high)
-{
-    return low + (high - low) * static_cast<double>(random.uniform());
-}
 
 Vec on_circle(const SwarmSetup& setup, unsigned index)
 {
@@ -33,14 +28,14 @@ Threat obstacle(const SwarmSetup& setup, Random& random, unsigned number)
     Threat sphere;
     sphere.name = "obstacle_" + std::to_string(number + 1);
     sphere.radius = setup.body;
-    const double from = drawn(random, -std::numbers::pi, std::numbers::pi);
-    const double distance = setup.circle + kClearStart + drawn(random, 0.0, setup.circle);
+    const double from = uniform(random, -std::numbers::pi, std::numbers::pi);
+    const double distance = setup.circle + kClearStart + uniform(random, 0.0, setup.circle);
     sphere.position = distance * Vec(std::cos(from), std::sin(from), 0.0);
-    const double to = drawn(random, -std::numbers::pi, std::numbers::pi);
-    const double aside = drawn(random, 0.0, 0.7 * setup.circle);
+    const double to = uniform(random, -std::numbers::pi, std::numbers::pi);
+    const double aside = uniform(random, 0.0, 0.7 * setup.circle);
     const Vec aim = aside * Vec(std::cos(to), std::sin(to), 0.0);
-    sphere.velocity = (aim - sphere.position).normalized() * drawn(random, kSlowest, kFastest) * setup.cruise;
-    sphere.position.z() = setup.height + drawn(random, -1.0, 1.0);
+    sphere.velocity = (aim - sphere.position).normalized() * uniform(random, kSlowest, kFastest) * setup.cruise;
+    sphere.position.z() = setup.height + uniform(random, -1.0, 1.0);
     return sphere;
 }
 
@@ -63,9 +58,9 @@ Scenario swarm_scenario(const SwarmSetup& setup, std::uint64_t seed, unsigned in
     Random places(seed * 7919U + 3U);
     Random obstacles(seed * 104729U + 5U);
     const auto off_place = [&] {
-        const double x = drawn(places, -setup.spread, setup.spread);
-        const double y = drawn(places, -setup.spread, setup.spread);
-        const double z = drawn(places, -setup.spread, setup.spread);
+        const double x = uniform(places, -setup.spread, setup.spread);
+        const double y = uniform(places, -setup.spread, setup.spread);
+        const double z = uniform(places, -setup.spread, setup.spread);
         return Vec(x, y, z);
     };
     Scenario s;

@@ -19,4 +19,26 @@ namespace jink::c_interface {
     return reinterpret_cast<jink_coprocessor*>(session);
 }
 
+/// The session of a call's handle.
+/// @param pointers  further ones that must not be null; they are checked first
+/// @return JINK_OK, JINK_ERROR_NULL or JINK_ERROR_HANDLE; `session` is valid with JINK_OK alone
+template <class... Pointers>
+[[nodiscard]] jink_result find(const jink_coprocessor* handle, Session*& session, const Pointers*... pointers) noexcept
+{
+    if (handle == nullptr || (... || (pointers == nullptr))) {
+        return JINK_ERROR_NULL;
+    }
+    session = session_of(handle);
+    return session != nullptr ? JINK_OK : JINK_ERROR_HANDLE;
+}
+
+/// The same for a call with a structure, whose `size` is checked last: JINK_ERROR_SIZE.
+template <class Sized, class... Pointers>
+[[nodiscard]] jink_result find_sized(const jink_coprocessor* handle, Session*& session, const Sized* sized,
+                                     const Pointers*... pointers) noexcept
+{
+    const jink_result result = find(handle, session, sized, pointers...);
+    return result == JINK_OK && sized->size != sizeof(Sized) ? JINK_ERROR_SIZE : result;
+}
+
 }  // namespace jink::c_interface

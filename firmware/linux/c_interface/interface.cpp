@@ -14,26 +14,8 @@ using jink::c_interface::Session;
 namespace {
 
 using namespace jink;
-using c_interface::session_of;
-
-/// JINK_OK, and the session, where the handle is one and no pointer is null.
-template <class... Pointers>
-jink_result find(const jink_coprocessor* handle, Session*& session, const Pointers*... pointers) noexcept
-{
-    if (handle == nullptr || (... || (pointers == nullptr))) {
-        return JINK_ERROR_NULL;
-    }
-    session = session_of(handle);
-    return session != nullptr ? JINK_OK : JINK_ERROR_HANDLE;
-}
-
-/// The same for a structure with its size.
-template <class Sized>
-jink_result find_sized(const jink_coprocessor* handle, Session*& session, const Sized* sized) noexcept
-{
-    const jink_result result = find(handle, session, sized);
-    return result == JINK_OK && sized->size != sizeof(Sized) ? JINK_ERROR_SIZE : result;
-}
+using c_interface::find;
+using c_interface::find_sized;
 
 template <class Operation>
 jink_result on_line(Session& session, std::int32_t port, Operation operation) noexcept
@@ -156,11 +138,8 @@ jink_result jink_feed_can(jink_coprocessor* jink, const jink_can_frame* frame)
 jink_result jink_take_can(jink_coprocessor* jink, jink_can_frame* frame, std::int32_t* has_frame)
 {
     Session* session = nullptr;
-    if (const jink_result result = find(jink, session, frame, has_frame); result != JINK_OK) {
+    if (const jink_result result = find_sized(jink, session, frame, has_frame); result != JINK_OK) {
         return result;
-    }
-    if (frame->size != sizeof *frame) {
-        return JINK_ERROR_SIZE;
     }
     if (session->can() == nullptr) {
         return JINK_ERROR_PORT;

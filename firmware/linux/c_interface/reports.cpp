@@ -13,7 +13,8 @@ using jink::c_interface::Session;
 namespace {
 
 using namespace jink;
-using c_interface::session_of;
+using c_interface::find;
+using c_interface::find_sized;
 
 Vec3 vector_of(const float (&from)[3]) noexcept { return {from[0], from[1], from[2]}; }
 
@@ -87,15 +88,9 @@ bool is_good(const jink_closed_area& area, std::int64_t now_us) noexcept
 
 jink_result jink_get_track(jink_coprocessor* jink, std::uint32_t index, jink_track* track)
 {
-    if (jink == nullptr || track == nullptr) {
-        return JINK_ERROR_NULL;
-    }
-    Session* const session = session_of(jink);
-    if (session == nullptr) {
-        return JINK_ERROR_HANDLE;
-    }
-    if (track->size != sizeof *track) {
-        return JINK_ERROR_SIZE;
+    Session* session = nullptr;
+    if (const jink_result result = find_sized(jink, session, track); result != JINK_OK) {
+        return result;
     }
     if (index >= session->tracks()) {
         return JINK_ERROR_INDEX;
@@ -145,12 +140,9 @@ jink_result jink_get_parameter_info(std::uint32_t index, jink_parameter* info)
 
 jink_result jink_get_parameter(const jink_coprocessor* jink, const char* name, float* value)
 {
-    if (jink == nullptr || name == nullptr || value == nullptr) {
-        return JINK_ERROR_NULL;
-    }
-    Session* const session = session_of(jink);
-    if (session == nullptr) {
-        return JINK_ERROR_HANDLE;
+    Session* session = nullptr;
+    if (const jink_result result = find(jink, session, name, value); result != JINK_OK) {
+        return result;
     }
     const std::size_t index = app::Parameters::find(name);
     if (index == app::kParamCount) {
@@ -168,12 +160,12 @@ jink_result jink_set_parameter(jink_coprocessor* jink, const char* name, float v
 jink_result jink_set_parameters(jink_coprocessor* jink, const char* const* names, const float* values,
                                 std::size_t count)
 {
-    if (jink == nullptr || (count > 0 && (names == nullptr || values == nullptr))) {
+    if (count > 0 && (names == nullptr || values == nullptr)) {
         return JINK_ERROR_NULL;
     }
-    Session* const session = session_of(jink);
-    if (session == nullptr) {
-        return JINK_ERROR_HANDLE;
+    Session* session = nullptr;
+    if (const jink_result result = find(jink, session); result != JINK_OK) {
+        return result;
     }
     for (std::size_t i = 0; i < count; ++i) {
         if (names[i] == nullptr) {
@@ -185,15 +177,9 @@ jink_result jink_set_parameters(jink_coprocessor* jink, const char* const* names
 
 jink_result jink_report_track(jink_coprocessor* jink, const jink_track_report* report)
 {
-    if (jink == nullptr || report == nullptr) {
-        return JINK_ERROR_NULL;
-    }
-    Session* const session = session_of(jink);
-    if (session == nullptr) {
-        return JINK_ERROR_HANDLE;
-    }
-    if (report->size != sizeof *report) {
-        return JINK_ERROR_SIZE;
+    Session* session = nullptr;
+    if (const jink_result result = find_sized(jink, session, report); result != JINK_OK) {
+        return result;
     }
     if (const jink_result checked = check(*report); checked != JINK_OK) {
         return checked;
@@ -214,15 +200,9 @@ jink_result jink_report_track(jink_coprocessor* jink, const jink_track_report* r
 
 jink_result jink_report_range(jink_coprocessor* jink, const jink_range_report* report)
 {
-    if (jink == nullptr || report == nullptr) {
-        return JINK_ERROR_NULL;
-    }
-    Session* const session = session_of(jink);
-    if (session == nullptr) {
-        return JINK_ERROR_HANDLE;
-    }
-    if (report->size != sizeof *report) {
-        return JINK_ERROR_SIZE;
+    Session* session = nullptr;
+    if (const jink_result result = find_sized(jink, session, report); result != JINK_OK) {
+        return result;
     }
     if (const jink_result checked = check(*report); checked != JINK_OK) {
         return checked;
@@ -240,12 +220,12 @@ jink_result jink_report_range(jink_coprocessor* jink, const jink_range_report* r
 jink_result jink_set_closed_areas(jink_coprocessor* jink, std::int64_t now_us, const jink_closed_area* areas,
                                   std::size_t count)
 {
-    if (jink == nullptr || (areas == nullptr && count > 0)) {
+    if (areas == nullptr && count > 0) {
         return JINK_ERROR_NULL;
     }
-    Session* const session = session_of(jink);
-    if (session == nullptr) {
-        return JINK_ERROR_HANDLE;
+    Session* session = nullptr;
+    if (const jink_result result = find(jink, session); result != JINK_OK) {
+        return result;
     }
     if (!is_stamp(now_us) || (session->last_step() && now_us < session->last_step()->us)) {
         return JINK_ERROR_TIME;

@@ -21,13 +21,27 @@ public:
         size_ = std::min(size_ + static_cast<std::size_t>(std::max(n, 0)), text_.size() - 1);
         return *this;
     }
-    Line& add_text(std::string_view text) noexcept { return add("%.*s", static_cast<int>(text.size()), text.data()); }
+    Line& add_text(std::string_view text) noexcept
+    {
+        const std::size_t n = std::min(text.size(), text_.size() - 1 - size_);
+        std::memcpy(text_.data() + size_, text.data(), n);
+        size_ += n;
+        return *this;
+    }
     [[nodiscard]] std::string_view view() const noexcept { return {text_.data(), size_}; }
 
 private:
     std::array<char, 240> text_{};
     std::size_t size_ = 0;
 };
+
+/// `from`, then zeros. Not inlined: with the bounds that its caller knows the compiler copies in a loop of its own,
+/// which takes more instructions than the library's from about 100 bytes on.
+[[gnu::noinline]] void copy_padded(std::span<const std::byte> from, std::span<std::byte> to) noexcept
+{
+    std::memcpy(to.data(), from.data(), from.size());
+    std::memset(to.data() + from.size(), 0, to.size() - from.size());
+}
 
 /// "conflict with track 7 in 3.2 s, faults none": why something changed.
 void add_reason(const app::StepReport& report, std::uint32_t id, Line& line)
@@ -91,14 +105,17 @@ void FlightLog::put_record(TimePoint now) noexcept
     }
     while (!rest.empty()) {
         const std::size_t n = std::min<std::size_t>(rest.size(), kHalSizes.back());
-        const auto* const size = std::lower_bound(kHalSizes.begin(), kHalSizes.end(), n);
-        const auto id =
-            static_cast<TopicId>(static_cast<std::ptrdiff_t>(TopicId::hal) + std::distance(kHalSizes.begin(), size));
+        std::size_t size = 0;
+        while (kHalSizes[size] < n) {
+            ++size;
+        }
+        const auto id = static_cast<TopicId>(static_cast<std::size_t>(TopicId::hal) + size);
         const bool goes_on = n < rest.size();
         const HalHead head{stamp_of(now), sequence_++, static_cast<std::uint16_t>(n),
                            goes_on ? HalHead::kGoesOn : std::uint16_t{0}};
         ulog::Composer part = data(id);
-        keep(part.put(head).put_bytes(rest.first(n)).fill(*size - n));
+        copy_padded(rest.first(n), part.put(head).room(kHalSizes[size]));
+        keep(part);
         rest = rest.subspan(n);
     }
     recorder_.clear();
@@ -132,18 +149,21 @@ void FlightLog::put_tracks(app::Coprocessor& coprocessor, TimePoint now) noexcep
     }
 }
 
+template <class T>
+void FlightLog::put_counters_of(TopicId id, std::span<const Counter<T>> counters, const T& diagnostics,
+                                TimePoint now) noexcept
+{
+    std::array<std::uint32_t, sizeof(T) / sizeof(std::uint32_t)> values;  // topics.cpp: as many as there are counters
+    std::transform(counters.begin(), counters.end(), values.begin(),
+                   [&](const Counter<T>& counter) { return diagnostics.*counter.member; });
+    ulog::Composer message = data(id);
+    keep(message.put(stamp_of(now)).put_bytes(std::as_bytes(std::span(values))));
+}
+
 void FlightLog::put_counters(const app::Coprocessor& coprocessor, TimePoint now) noexcept
 {
-    ulog::Composer of_app = data(TopicId::app_counters).put(stamp_of(now));
-    for (const auto& counter : app_counters()) {
-        of_app.put(coprocessor.diagnostics().*counter.member);
-    }
-    keep(of_app);
-    ulog::Composer of_avoid = data(TopicId::avoid_counters).put(stamp_of(now));
-    for (const auto& counter : avoid_counters()) {
-        of_avoid.put(coprocessor.supervisor_diagnostics().*counter.member);
-    }
-    keep(of_avoid);
+    put_counters_of(TopicId::app_counters, app_counters(), coprocessor.diagnostics(), now);
+    put_counters_of(TopicId::avoid_counters, avoid_counters(), coprocessor.supervisor_diagnostics(), now);
     const LogCounts counts = output_.counts();
     put(TopicId::log,
         LogTopic{stamp_of(now), counts.messages, counts.dropped, counts.write_failures, counts.files, counts.peak});
@@ -200,10 +220,6 @@ void FlightLog::put_changes(const app::StepReport& report, std::uint32_t id, Tim
 
 void FlightLog::put_changed_parameters(const app::Parameters& parameters) noexcept
 {
-    const bool is_first = !has_generation_;
-    if (!is_first && parameters.generation() == generation_) {
-        return;
-    }
     generation_ = parameters.generation();
     has_generation_ = true;
     for (std::size_t i = 0; i < parameters_.size(); ++i) {
@@ -230,7 +246,10 @@ void FlightLog::end(const app::StepReport& report, app::Coprocessor& coprocessor
     step.duration_us = static_cast<std::uint32_t>(std::clamp<std::int64_t>(took_us, 0, 0xFFFFFFFF));
     put(TopicId::step, step);
     put_own(report, coprocessor, began);
-    put_changes(report, id, began);
+    if (report.state != last_.state || report.faults != last_.faults || report.control != last_.control ||
+        report.guidance.state != last_.guidance || report.guidance.new_manoeuvre) {
+        put_changes(report, id, began);
+    }
     if (!recorder_.texts().texts().empty()) {
         put_sent_texts(began);
     }
@@ -239,7 +258,9 @@ void FlightLog::end(const app::StepReport& report, app::Coprocessor& coprocessor
         put(TopicId::decision, decision_topic(report, coprocessor.own().position, began, decisions_));
         put_candidates(coprocessor, began);
     }
-    put_changed_parameters(coprocessor.parameters());
+    if (!has_generation_ || coprocessor.parameters().generation() != generation_) {
+        put_changed_parameters(coprocessor.parameters());
+    }
     if (began.us >= tracks_due_) {
         put_tracks(coprocessor, began);
         tracks_due_ = began.us + kTrackPeriod;

@@ -11,18 +11,21 @@ constexpr unsigned kRemote = 2U;
 constexpr unsigned kFd = 4U;
 constexpr unsigned kRateSwitch = 8U;
 
+template <class H>
+H from_numbers(const Health& numbers)
+{
+    H health;
+    health.state = static_cast<decltype(health.state)>(numbers[0]);
+    for (std::size_t i = 0; i < kCountersOf<H>.size(); ++i) {
+        health.*kCountersOf<H>[i] = numbers[i + 1];
+    }
+    return health;
+}
+
 }  // namespace
 
-hal::PortHealth to_port_health(const Health& n) noexcept
-{
-    return {static_cast<hal::PortState>(n[0]), n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9], n[10]};
-}
-
-hal::CanHealth to_can_health(const Health& n) noexcept
-{
-    return {
-        static_cast<hal::CanState>(n[0]), n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9], n[10], n[11], n[12]};
-}
+hal::PortHealth to_port_health(const Health& numbers) noexcept { return from_numbers<hal::PortHealth>(numbers); }
+hal::CanHealth to_can_health(const Health& numbers) noexcept { return from_numbers<hal::CanHealth>(numbers); }
 
 void EntryWriter::frame(const hal::CanFrame& f) noexcept
 {
@@ -50,21 +53,12 @@ void EntryWriter::area(const app::Constraint& a) noexcept
     }
 }
 
-void EntryWriter::health(const Health& before, const Health& now) noexcept
+void EntryWriter::count_at_end(std::uint64_t value) noexcept
 {
-    const std::size_t mask = size_;
-    put(std::uint16_t{0});
-    unsigned differs = 0;
-    for (std::size_t i = 0; i < kHealthNumbers; ++i) {
-        if (now[i] != before[i]) [[unlikely]] {
-            differs |= 1U << i;
-            count(now[i] - before[i]);  // modulo 2^64: a counter that is smaller takes ten bytes
-        }
+    for (; value >= 0x80U; value >>= 7U) {
+        byte(static_cast<unsigned>(value & 0x7FU) | 0x80U);
     }
-    if (!overflowed_) {
-        bytes_[mask] = static_cast<std::byte>(differs & 0xFFU);
-        bytes_[mask + 1] = static_cast<std::byte>(differs >> 8U);
-    }
+    byte(static_cast<unsigned>(value));
 }
 
 Entry EntryReader::kind() const noexcept

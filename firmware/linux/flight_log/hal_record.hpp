@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -40,41 +41,52 @@ enum class Entry : std::uint8_t {
 enum class Port : std::uint8_t { line, cloud, can };
 inline constexpr std::size_t kPorts = 3;
 
+/// The counters of a health, in the order of a record.
+template <class H>
+inline constexpr auto kCountersOf = nullptr;
+template <>
+inline constexpr auto kCountersOf<hal::PortHealth> =
+    std::to_array({&hal::PortHealth::bytes_in, &hal::PortHealth::bytes_out, &hal::PortHealth::bytes_refused,
+                   &hal::PortHealth::overruns, &hal::PortHealth::line_errors, &hal::PortHealth::read_errors,
+                   &hal::PortHealth::write_errors, &hal::PortHealth::open_failures, &hal::PortHealth::disconnects,
+                   &hal::PortHealth::reconnects});
+template <>
+inline constexpr auto kCountersOf<hal::CanHealth> =
+    std::to_array({&hal::CanHealth::frames_in, &hal::CanHealth::frames_out, &hal::CanHealth::frames_refused,
+                   &hal::CanHealth::frames_bad, &hal::CanHealth::overruns, &hal::CanHealth::bus_errors,
+                   &hal::CanHealth::bus_offs, &hal::CanHealth::restarts, &hal::CanHealth::read_errors,
+                   &hal::CanHealth::write_errors, &hal::CanHealth::downs, &hal::CanHealth::ups});
+static_assert(sizeof(hal::PortHealth) == (1 + kCountersOf<hal::PortHealth>.size()) * sizeof(std::uint64_t) &&
+                  sizeof(hal::CanHealth) == (1 + kCountersOf<hal::CanHealth>.size()) * sizeof(std::uint64_t),
+              "a counter is missing");
+
 /// A port's health as numbers: the state, then the counters in their order.
-inline constexpr std::size_t kHealthNumbers = 13;
+inline constexpr std::size_t kHealthNumbers = 1 + kCountersOf<hal::CanHealth>.size();
 using Health = std::array<std::uint64_t, kHealthNumbers>;
-[[nodiscard]] inline Health to_numbers(const hal::PortHealth& h) noexcept
+template <class H>
+[[nodiscard]] Health to_numbers(const H& health) noexcept
 {
-    return {static_cast<std::uint64_t>(h.state),
-            h.bytes_in,
-            h.bytes_out,
-            h.bytes_refused,
-            h.overruns,
-            h.line_errors,
-            h.read_errors,
-            h.write_errors,
-            h.open_failures,
-            h.disconnects,
-            h.reconnects};
-}
-[[nodiscard]] inline Health to_numbers(const hal::CanHealth& h) noexcept
-{
-    return {static_cast<std::uint64_t>(h.state),
-            h.frames_in,
-            h.frames_out,
-            h.frames_refused,
-            h.frames_bad,
-            h.overruns,
-            h.bus_errors,
-            h.bus_offs,
-            h.restarts,
-            h.read_errors,
-            h.write_errors,
-            h.downs,
-            h.ups};
+    Health numbers{static_cast<std::uint64_t>(health.state)};
+    for (std::size_t i = 0; i < kCountersOf<H>.size(); ++i) {
+        numbers[i + 1] = health.*kCountersOf<H>[i];
+    }
+    return numbers;
 }
 [[nodiscard]] hal::PortHealth to_port_health(const Health& numbers) noexcept;
 [[nodiscard]] hal::CanHealth to_can_health(const Health& numbers) noexcept;
+
+/// Bit i: number i differs.
+template <class H>
+[[nodiscard]] unsigned differences(const H& before, const H& now) noexcept
+{
+    unsigned differs = now.state != before.state ? 1U : 0U;
+    for (std::size_t i = 0; i < kCountersOf<H>.size(); ++i) {
+        if (now.*kCountersOf<H>[i] != before.*kCountersOf<H>[i]) [[unlikely]] {
+            differs |= 2U << i;
+        }
+    }
+    return differs;
+}
 
 /// Writes entries into memory that is allocated once. A record that does not fit is `overflowed`.
 class EntryWriter {
@@ -90,12 +102,24 @@ public:
     {
         byte(static_cast<unsigned>(kind) | static_cast<unsigned>(port) << 4U);
     }
+    /// The same, and a count.
+    void entry(Entry kind, Port port, std::uint64_t value) noexcept
+    {
+        entry(kind, port);
+        count(value);
+    }
     void count(std::uint64_t value) noexcept
     {
-        for (; value >= 0x80U; value >>= 7U) {
-            byte(static_cast<unsigned>(value & 0x7FU) | 0x80U);
+        if (bytes_.size() - size_ < kLongestCount) [[unlikely]] {
+            count_at_end(value);
+            return;
         }
-        byte(static_cast<unsigned>(value));
+        std::byte* at = bytes_.data() + size_;
+        for (; value >= 0x80U; value >>= 7U) {
+            *at++ = static_cast<std::byte>(static_cast<unsigned>(value & 0x7FU) | 0x80U);
+        }
+        *at++ = static_cast<std::byte>(value);
+        size_ = static_cast<std::size_t>(at - bytes_.data());
     }
     void bytes(std::span<const std::byte> bytes) noexcept
     {
@@ -114,7 +138,19 @@ public:
     void frame(const hal::CanFrame& frame) noexcept;
     void area(const app::Constraint& area) noexcept;
     /// The numbers that differ from `before`.
-    void health(const Health& before, const Health& now) noexcept;
+    /// @param differs  of `differences`
+    template <class H>
+    void health(unsigned differs, const H& before, const H& now) noexcept
+    {
+        put(static_cast<std::uint16_t>(differs));
+        if ((differs & 1U) != 0) {
+            count(static_cast<std::uint64_t>(now.state) - static_cast<std::uint64_t>(before.state));
+        }
+        for (unsigned rest = differs & ~1U; rest != 0; rest &= rest - 1) {
+            const auto counter = kCountersOf<H>[static_cast<std::size_t>(std::countr_zero(rest)) - 1];
+            count(now.*counter - before.*counter);  // modulo 2^64: a counter that is smaller takes ten bytes
+        }
+    }
 
     /// The newest n bytes, to be changed.
     [[nodiscard]] std::span<std::byte> newest(std::size_t n) noexcept
@@ -133,6 +169,11 @@ private:
             overflowed_ = true;
         }
     }
+
+    /// Byte by byte, because the record is nearly full.
+    void count_at_end(std::uint64_t value) noexcept;
+
+    static constexpr std::size_t kLongestCount = 10;  ///< of 64 bits, 7 to a byte
 
     std::vector<std::byte> bytes_;
     std::size_t size_ = 0;

@@ -16,9 +16,10 @@ constexpr std::size_t kMaxPayload = 42;
 /// @param header  ten bytes
 bool is_setup_signing(const std::byte* header)
 {
-    return header[0] == link::mavlink::kStartV2 && static_cast<std::size_t>(header[kLength]) <= kMaxPayload &&
-           static_cast<unsigned>(header[kFlags]) <= 1U && header[kMessageId] == std::byte{0} &&
-           header[kMessageId + 1] == std::byte{1} && header[kMessageId + 2] == std::byte{0};
+    return header[kMessageId] == std::byte{0} &&  // first: few other frames get further
+           header[0] == link::mavlink::kStartV2 && static_cast<std::size_t>(header[kLength]) <= kMaxPayload &&
+           static_cast<unsigned>(header[kFlags]) <= 1U && header[kMessageId + 1] == std::byte{1} &&
+           header[kMessageId + 2] == std::byte{0};
 }
 
 constexpr std::uint32_t kNodeMask = 0x7F;
@@ -53,12 +54,7 @@ std::span<const std::byte> tunnelled(const hal::CanFrame& frame, std::size_t& he
 
 bool KeyEraser::erase(std::span<std::byte> bytes) noexcept
 {
-    constexpr std::size_t kTail = kHeader - 1;
     bool erased = false;
-    std::array<std::byte, 2 * kTail> joint{};
-    std::copy(tail_.begin(), tail_.end(), joint.begin());
-    const std::size_t head = std::min(bytes.size(), kTail);
-    std::copy_n(bytes.begin(), head, joint.begin() + kTail);
     const auto wipe = [&](std::size_t from, std::size_t length) {
         const std::size_t to = std::min(from + length, bytes.size());
         if (from < to) {
@@ -67,32 +63,42 @@ bool KeyEraser::erase(std::span<std::byte> bytes) noexcept
         }
         secret_ = std::max(secret_, from + length - std::min(from + length, bytes.size()));
     };
+    const std::size_t head = std::min(bytes.size(), kTail);
+    const bool is_joined = may_go_on_ || bytes.size() < kTail;
+    std::array<std::byte, 2 * kTail> joint;
+    if (is_joined) {
+        std::copy(tail_.begin(), tail_.end(), joint.begin());
+        std::copy_n(bytes.begin(), head, joint.begin() + kTail);
+    }
     if (const std::size_t rest = std::exchange(secret_, 0); rest > 0) {
         wipe(0, rest);
     }
-    const bool may_go_on = std::memchr(tail_.data(), static_cast<int>(link::mavlink::kStartV2), kTail) != nullptr;
-    for (std::size_t i = 0; may_go_on && i + kHeader <= kTail + head; ++i) {  // frames that began in the reads before
-        if (is_setup_signing(joint.data() + i)) {
-            wipe(i + kHeader - kTail, static_cast<std::size_t>(joint[i + kLength]) + link::mavlink::kChecksumSize);
+    if (is_joined) {
+        for (std::size_t i = 0; i + kHeader <= kTail + head; ++i) {  // frames that began in the reads before
+            if (is_setup_signing(joint.data() + i)) {
+                wipe(i + kHeader - kTail, static_cast<std::size_t>(joint[i + kLength]) + link::mavlink::kChecksumSize);
+            }
         }
+        std::copy_n(joint.begin() + static_cast<std::ptrdiff_t>(head), kTail, tail_.begin());
     }
-    // The first of these begin in this read.
-    for (std::size_t i = 0; i + kHeader <= bytes.size();) {
-        const void* const found =
-            std::memchr(bytes.data() + i, static_cast<int>(link::mavlink::kStartV2), bytes.size() - i - kHeader + 1);
-        if (found == nullptr) {
+    may_go_on_ = bytes.size() < kTail;
+    // Frames that begin in this read.
+    std::byte* at = bytes.data();
+    std::byte* const end = at + bytes.size();
+    while ((at = static_cast<std::byte*>(std::memchr(at, static_cast<int>(link::mavlink::kStartV2),
+                                                     static_cast<std::size_t>(end - at)))) != nullptr) {
+        if (end - at < static_cast<std::ptrdiff_t>(kHeader)) {
+            may_go_on_ = true;  // in the tail
             break;
         }
-        i = static_cast<std::size_t>(static_cast<const std::byte*>(found) - bytes.data());
-        if (is_setup_signing(bytes.data() + i)) {
-            wipe(i + kHeader, static_cast<std::size_t>(bytes[i + kLength]) + link::mavlink::kChecksumSize);
+        if (is_setup_signing(at)) {
+            wipe(static_cast<std::size_t>(at - bytes.data()) + kHeader,
+                 static_cast<std::size_t>(at[kLength]) + link::mavlink::kChecksumSize);
         }
-        ++i;
+        ++at;
     }
     if (bytes.size() >= kTail) {
-        std::copy(bytes.end() - kTail, bytes.end(), tail_.begin());
-    } else {
-        std::copy_n(joint.begin() + static_cast<std::ptrdiff_t>(head), kTail, tail_.begin());
+        std::memcpy(tail_.data(), bytes.data() + bytes.size() - kTail, kTail);
     }
     return erased;
 }
@@ -135,8 +141,7 @@ const EntryWriter& HalRecorder::end() noexcept
 
 void HalRecorder::read(Port port, std::span<const std::byte> bytes) noexcept
 {
-    entries_.entry(Entry::read, port);
-    entries_.count(bytes.size());
+    entries_.entry(Entry::read, port, bytes.size());
     entries_.bytes(bytes);
     same_[static_cast<std::size_t>(port)] = 0;
     if (port == Port::line && !bytes.empty()) {
@@ -163,8 +168,7 @@ void HalRecorder::erase_keys(KeyEraser& eraser, std::span<const std::byte> bytes
 
 void HalRecorder::write(Port port, std::span<const std::byte> offered, std::size_t accepted) noexcept
 {
-    entries_.entry(Entry::write, port);
-    entries_.count(accepted);
+    entries_.entry(Entry::write, port, accepted);
     entries_.count(offered.size());
     entries_.bytes(offered);
     same_[static_cast<std::size_t>(port)] = 0;
@@ -173,19 +177,27 @@ void HalRecorder::write(Port port, std::span<const std::byte> offered, std::size
     }
 }
 
-void HalRecorder::health(Port port, const Health& health) noexcept
+template <class H>
+void HalRecorder::note_health(Port port, H& last, const H& now) noexcept
 {
-    const auto i = static_cast<std::size_t>(port);
-    if (health == health_[i]) {
-        ++same_[i];
+    std::uint32_t& same = same_[static_cast<std::size_t>(port)];
+    const unsigned differs = differences(last, now);
+    if (differs == 0) {
+        ++same;
         return;
     }
-    entries_.entry(Entry::health, port);
-    entries_.count(same_[i]);
-    entries_.health(health_[i], health);
-    health_[i] = health;
-    same_[i] = 0;
+    entries_.entry(Entry::health, port, same);
+    entries_.health(differs, last, now);
+    last = now;
+    same = 0;
 }
+
+void HalRecorder::health(Port port, const hal::PortHealth& health) noexcept
+{
+    note_health(port, port == Port::line ? line_health_ : cloud_health_, health);
+}
+
+void HalRecorder::health(const hal::CanHealth& health) noexcept { note_health(Port::can, can_health_, health); }
 
 void HalRecorder::received(const hal::CanFrame* frame) noexcept
 {
@@ -230,7 +242,7 @@ hal::PortHealth RecordingSerialPort::health() const noexcept
 {
     const hal::PortHealth health = port_.health();
     if (recorder_.is_recording()) {
-        recorder_.health(which_, to_numbers(health));
+        recorder_.health(which_, health);
     }
     return health;
 }
@@ -257,7 +269,7 @@ hal::CanHealth RecordingCanPort::health() const noexcept
 {
     const hal::CanHealth health = port_.health();
     if (recorder_.is_recording()) {
-        recorder_.health(Port::can, to_numbers(health));
+        recorder_.health(health);
     }
     return health;
 }

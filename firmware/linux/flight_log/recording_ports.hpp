@@ -24,9 +24,11 @@ public:
 private:
     /// Version 1 cannot carry this message.
     static constexpr std::size_t kHeader = link::mavlink::kHeaderV2;
+    static constexpr std::size_t kTail = kHeader - 1;
 
-    std::array<std::byte, kHeader - 1> tail_{};  ///< of the reads before
-    std::size_t secret_ = 0;                     ///< bytes of the present frame still to be overwritten
+    std::array<std::byte, kTail> tail_{};  ///< of the reads before
+    bool may_go_on_ = false;               ///< a frame may begin in the tail
+    std::size_t secret_ = 0;               ///< bytes of the present frame still to be overwritten
 };
 
 /// Records calls between `begin` and `end` of a step; other calls pass unrecorded.
@@ -48,7 +50,9 @@ public:
 
     void read(Port port, std::span<const std::byte> bytes) noexcept;
     void write(Port port, std::span<const std::byte> offered, std::size_t accepted) noexcept;
-    void health(Port port, const Health& health) noexcept;
+    /// @param port  a serial one
+    void health(Port port, const hal::PortHealth& health) noexcept;
+    void health(const hal::CanHealth& health) noexcept;
     void received(const hal::CanFrame* frame) noexcept;
     void sent(const hal::CanFrame& frame, bool accepted) noexcept;
     [[nodiscard]] bool is_recording() const noexcept { return recording_; }
@@ -56,6 +60,8 @@ public:
     [[nodiscard]] SentTexts& texts() noexcept { return texts_; }
 
 private:
+    template <class H>
+    void note_health(Port port, H& last, const H& now) noexcept;
     void erase_keys(KeyEraser& eraser, std::span<const std::byte> bytes, std::size_t behind) noexcept;
 
     static constexpr std::size_t kNodes = 128;
@@ -70,7 +76,9 @@ private:
     KeyEraser eraser_;
     std::array<Tunnel, kNodes> tunnels_;  ///< by the sender's node id
     SentTexts texts_;
-    std::array<Health, kPorts> health_{};
+    hal::PortHealth line_health_;
+    hal::PortHealth cloud_health_;
+    hal::CanHealth can_health_;
     std::array<std::uint32_t, kPorts> same_{};  ///< health calls without a difference since the last entry
 };
 

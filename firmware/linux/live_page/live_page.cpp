@@ -19,8 +19,7 @@
 #include <vector>
 
 #include "firmware/linux/background.hpp"
-#include "firmware/linux/flight_log/queue.hpp"
-#include "firmware/linux/flight_log/topics.hpp"
+#include "firmware/linux/live_page/feed.hpp"
 #include "firmware/linux/live_page/server.hpp"
 #include "firmware/linux/live_page/snapshot.hpp"
 #include "firmware/linux/ports.hpp"
@@ -70,23 +69,10 @@ std::optional<std::string> read_page(const PageOptions& options)
     return text;
 }
 
-/// Whether the page shows this message.
-bool is_shown(std::span<const std::byte> message) noexcept
-{
-    const auto type = static_cast<ulog::Type>(message[2]);
-    if (type != ulog::Type::data) {
-        return type == ulog::Type::text || type == ulog::Type::parameter;
-    }
-    const auto id =
-        static_cast<flightlog::TopicId>(static_cast<unsigned>(message[3]) | static_cast<unsigned>(message[4]) << 8U);
-    return id == flightlog::TopicId::step || id == flightlog::TopicId::own || id == flightlog::TopicId::track ||
-           id == flightlog::TopicId::decision;
-}
-
 }  // namespace
 
 struct LivePage::Shared {
-    flightlog::Queue queue{kQueueBytes};
+    Feed feed{kQueueBytes};
     Server server;
     Snapshot snapshot;
     hal::SystemClock clock;
@@ -110,9 +96,9 @@ struct LivePage::Shared {
                 continue;
             }
             due = std::max(due + kPeriod, now);
-            // The queue fits into the buffer, and its writer adds whole messages: what is taken are whole messages.
-            snapshot.take(std::span(messages).first(queue.take(messages)));
-            server.note_lost(queue.dropped());
+            // The queue fits into the buffer, and the loop adds whole messages: what is taken are whole messages.
+            snapshot.take(std::span(messages).first(feed.take(messages)));
+            server.note_lost(feed.dropped());
             if (snapshot.has_news()) {
                 server.send(snapshot.json(false, server.counts()), now);
                 snapshot.begin_next();
@@ -158,24 +144,11 @@ LivePage::~LivePage()
     shared_->thread.join();
 }
 
-bool LivePage::add(std::span<const std::byte> messages, std::uint32_t /*count*/) noexcept
+bool LivePage::add(std::span<const std::byte> messages, std::uint32_t count) noexcept
 {
-    bool all = true;
-    while (messages.size() >= ulog::kDataHeader) {
-        const std::size_t content = static_cast<unsigned>(messages[0]) | static_cast<unsigned>(messages[1]) << 8U;
-        const std::size_t size = std::min(ulog::kMessageHeader + content, messages.size());
-        const std::span<const std::byte> message = messages.first(size);
-        if (is_shown(message)) {
-            all = shared_->queue.add(message, 0, 1) && all;
-        }
-        messages = messages.subspan(size);
-    }
-    return all;
+    return shared_->feed.add(messages, count);
 }
 
-flightlog::LogCounts LivePage::counts() const noexcept
-{
-    return {shared_->queue.messages(), shared_->queue.dropped(), 0, 0, shared_->queue.peak()};
-}
+flightlog::LogCounts LivePage::counts() const noexcept { return shared_->feed.counts(); }
 
 }  // namespace jink::livepage

@@ -18,9 +18,8 @@ struct PageOptions {
 
 /// The live view of a flight in a browser, read only: `jinkd --page`.
 ///
-/// Takes the messages of the flight log, so that log and page tell the same. `add` never waits: it copies the messages
-/// that the page shows into a queue, and what does not fit is dropped and counted. One thread of lower priority takes
-/// them, makes an event every kPeriod and serves clients (server.hpp).
+/// Takes the messages of the flight log, so that log and page tell the same. `add` never waits (feed.hpp). One thread
+/// of lower priority takes the messages, makes an event every kPeriod and serves clients (server.hpp).
 ///
 /// Memory: twice kQueueBytes, the page, and the server's clients.
 class LivePage final : public flightlog::Output {
