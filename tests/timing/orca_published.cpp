@@ -21,7 +21,8 @@ float distance2_to_box(const Vec3& low, const Vec3& high, const Vec3& point)
 
 }  // namespace
 
-/// The incremental programs: in a ball of `radius`, nearest to `target`, or farthest along it (`along`, a unit vector).
+/// The incremental programs: in a sphere of `radius`, nearest to `target`, or farthest along it (`along`, a unit
+/// vector).
 struct PublishedProgram {
     using Plane = PublishedSwarm::Plane;
     float radius;
