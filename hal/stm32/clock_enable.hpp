@@ -6,7 +6,7 @@
 namespace jink::hal::stm32 {
 
 /// Starts the clock of a peripheral: sets `bits` in the enable register at `offset` of RCC. The read at the end waits
-/// until the clock runs: two bus cycles (ST RM0090, 7.2.12; RM0433, 8.5.10). O(1).
+/// until the clock runs: two bus cycles (ST RM0090, 7.3; RM0433, 8.5). O(1).
 template <RegisterBlock Rcc>
 void enable_clock(Rcc rcc, std::uint32_t offset, std::uint32_t bits) noexcept
 {

@@ -8,8 +8,8 @@ namespace jink::hal::stm32h7 {
 /// Has the bus matrix read the AXI SRAM one access at a time, where a read of several may give wrong data: revisions Z
 /// and Y of the STM32H743 (ST ES0392, 2.2.9). Before the AXI SRAM is used. O(1).
 ///
-/// @param debug   DBGMCU, which has the revision (ST RM0433, 60.5.8)
-/// @param matrix  the AXI interconnect (2.2.4)
+/// @param debug   DBGMCU, which has the revision (ST RM0433, 60)
+/// @param matrix  the AXI interconnect (2.2)
 template <RegisterBlock Debug, RegisterBlock Matrix>
 void settle_axi_sram(Debug debug, Matrix matrix) noexcept
 {

@@ -34,7 +34,7 @@ struct ClockModel {
     [[nodiscard]] bool at_scale1() const { return scale_comes && scale >> 14U == 3U && supply_is_set(); }
     [[nodiscard]] bool supply_is_set() const { return supply_is_locked && (supply & 3U) == 2U; }
 
-    /// By the manual's formula (8.5.5) [Hz]: the processor's clock after the switch.
+    /// By the manual's formula (8.5) [Hz]: the processor's clock after the switch.
     [[nodiscard]] double pll_output() const
     {
         const double input = (sources & 3U) == 2 ? 8e6 : 64e6;

@@ -10,7 +10,7 @@ namespace {
 
 using stm32::ResetCause;
 
-/// RCC_CSR as RM0090, 7.3.21 has it, or RCC_RSR as RM0433, 8.7.39 has it.
+/// RCC_CSR as RM0090, 7.3.21 has it, or RCC_RSR as RM0433, 8.7 has it.
 struct ResetModel {
     std::uint32_t offset;
     std::uint32_t remove;
