@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Records of steps: entries, signing keys that must not get into a log, texts, and what is set beside the link.
+// Records of steps: entries, texts, and what is set beside the link.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 
-#include "firmware/link/dronecan/tunnel.hpp"
 #include "firmware/link/mavlink/encoder.hpp"
 #include "firmware/link/mavlink/messages.hpp"
 #include "firmware/linux/flight_log/sent_texts.hpp"
 #include "tests/flight_log/recorded_flight.hpp"
+#include "tests/flight_log/setup_signing.hpp"
 #include "toolchain/sim/random_scenario.hpp"
 
 namespace {
@@ -17,134 +17,6 @@ namespace {
 using namespace jink;
 using namespace jink::test;
 using namespace jink::flightlog;
-
-/// 32 bytes that occur nowhere else.
-link::mavlink::Signing::Key secret()
-{
-    link::mavlink::Signing::Key key;
-    std::mt19937 random(77);
-    std::generate(key.begin(), key.end(), [&] { return static_cast<std::byte>(1 + random() % 200); });
-    return key;
-}
-
-std::vector<std::byte> setup_signing_frame()
-{
-    link::mavlink::SetupSigning message;
-    message.target_system = 1;
-    message.target_component = 196;
-    const auto key = secret();
-    std::transform(key.begin(), key.end(), message.secret_key.begin(),
-                   [](std::byte b) { return static_cast<std::uint8_t>(b); });
-    message.initial_timestamp = 12345;
-    std::array<std::byte, link::mavlink::kMaxFrame> frame{};
-    const std::size_t n = link::mavlink::encode(message, {255, 190, 3}, frame);
-    return {frame.begin(), frame.begin() + static_cast<std::ptrdiff_t>(n)};
-}
-
-/// Longest part of a key that `bytes` contain.
-std::size_t longest_part(std::span<const std::byte> bytes, std::span<const std::byte> key)
-{
-    std::size_t longest = 0;
-    for (std::size_t i = 0; i < bytes.size(); ++i) {
-        for (std::size_t k = 0; k < key.size(); ++k) {
-            std::size_t n = 0;
-            while (i + n < bytes.size() && k + n < key.size() && bytes[i + n] == key[k + n]) {
-                ++n;
-            }
-            longest = std::max(longest, n);
-        }
-    }
-    return longest;
-}
-
-std::size_t longest_part(const std::string& log)
-{
-    const auto key = secret();
-    return longest_part(std::as_bytes(std::span(log)), key);
-}
-
-TEST(KeyEraser, ErasesAKeyHoweverItsFrameIsSplit)
-{
-    const std::vector<std::byte> frame = setup_signing_frame();
-    const auto key = secret();
-    for (std::size_t before = 0; before < 20; ++before) {
-        std::vector<std::byte> stream(before, std::byte{0x11});
-        stream.insert(stream.end(), frame.begin(), frame.end());
-        stream.insert(stream.end(), 30, std::byte{0x22});
-        for (std::size_t first = 1; first < stream.size(); ++first) {
-            for (const std::size_t step : {std::size_t{1}, std::size_t{5}, std::size_t{9}, std::size_t{200}}) {
-                KeyEraser eraser;
-                std::vector<std::byte> kept;
-                bool erased = false;
-                for (std::size_t at = 0; at < stream.size();) {
-                    const std::size_t n = std::min(at == 0 ? first : step, stream.size() - at);
-                    std::vector<std::byte> piece(stream.begin() + static_cast<std::ptrdiff_t>(at),
-                                                 stream.begin() + static_cast<std::ptrdiff_t>(at + n));
-                    erased = eraser.erase(piece) || erased;
-                    kept.insert(kept.end(), piece.begin(), piece.end());
-                    at += n;
-                }
-                ASSERT_TRUE(erased);
-                ASSERT_LE(longest_part(kept, key), 1U) << before << " " << first << " " << step;
-                ASSERT_TRUE(std::equal(stream.begin(), stream.begin() + static_cast<std::ptrdiff_t>(before + 10),
-                                       kept.begin()));
-                ASSERT_TRUE(std::equal(stream.end() - 30, stream.end(), kept.end() - 30)) << "what follows stays";
-            }
-        }
-    }
-}
-
-TEST(KeyEraser, LeavesOtherFramesAlone)
-{
-    std::mt19937_64 random(5);
-    KeyEraser eraser;
-    for (int i = 0; i < 2'000; ++i) {
-        std::vector<std::byte> bytes(random() % 500);
-        std::generate(bytes.begin(), bytes.end(), [&] { return static_cast<std::byte>(random()); });
-        const std::vector<std::byte> before = bytes;
-        ASSERT_FALSE(eraser.erase(bytes));
-        ASSERT_EQ(bytes, before);
-    }
-}
-
-/// Through the tunnel of a bus, in transfers of any length.
-TEST(KeyEraser, ErasesAKeyInTheTunnelOfABus)
-{
-    using namespace link::dronecan;
-    const std::vector<std::byte> frame = setup_signing_frame();
-    for (std::size_t piece = 1; piece <= frame.size(); ++piece) {
-        NodeOptions options;
-        options.node = 10;
-        Node peer(options);
-        Tunnel tunnel(TunnelOptions{42, 0});
-        HalRecorder recorder(100'000);
-        std::vector<std::byte> kept;
-        bool noted = false;
-        std::size_t frames = 0;
-        for (std::span<const std::byte> rest(frame); !rest.empty();) {
-            rest = rest.subspan(tunnel.write(peer, rest.first(std::min(piece, rest.size()))));
-            recorder.begin({1});
-            while (const Frame* const out = peer.outgoing().front()) {
-                hal::CanFrame received;
-                received.id = out->id;
-                received.extended = true;
-                received.length = out->length;
-                std::copy_n(out->data.begin(), Frame::kBytes, received.data.begin());
-                recorder.received(&received);
-                peer.outgoing().pop();
-                ++frames;
-            }
-            const std::span<const std::byte> record = recorder.end().record();
-            kept.insert(kept.end(), record.begin(), record.end());
-            noted = noted ||
-                    std::find(record.begin(), record.end(), static_cast<std::byte>(Entry::key_removed)) != record.end();
-            recorder.clear();
-        }
-        ASSERT_TRUE(noted) << piece;
-        ASSERT_GT(frames, 8U);
-        ASSERT_LE(longest_part(kept, secret()), 2U) << piece;
-    }
-}
 
 TEST(HalRecord, EntriesAreReadAsWritten)
 {

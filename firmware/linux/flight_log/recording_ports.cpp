@@ -55,6 +55,7 @@ std::span<const std::byte> tunnelled(const hal::CanFrame& frame, std::size_t& he
 bool KeyEraser::erase(std::span<std::byte> bytes) noexcept
 {
     bool erased = false;
+    const std::size_t rest = std::exchange(secret_, 0);
     const auto wipe = [&](std::size_t from, std::size_t length) {
         const std::size_t to = std::min(from + length, bytes.size());
         if (from < to) {
@@ -63,42 +64,39 @@ bool KeyEraser::erase(std::span<std::byte> bytes) noexcept
         }
         secret_ = std::max(secret_, from + length - std::min(from + length, bytes.size()));
     };
+    // Headers are searched in what was received, also in what another header makes a payload: a frame that was cut may
+    // be followed by the one that the receiver takes.
     const std::size_t head = std::min(bytes.size(), kTail);
     const bool is_joined = may_go_on_ || bytes.size() < kTail;
     std::array<std::byte, 2 * kTail> joint;
     if (is_joined) {
         std::copy(tail_.begin(), tail_.end(), joint.begin());
         std::copy_n(bytes.begin(), head, joint.begin() + kTail);
-    }
-    if (const std::size_t rest = std::exchange(secret_, 0); rest > 0) {
-        wipe(0, rest);
-    }
-    if (is_joined) {
-        for (std::size_t i = 0; i + kHeader <= kTail + head; ++i) {  // frames that began in the reads before
-            if (is_setup_signing(joint.data() + i)) {
-                wipe(i + kHeader - kTail, static_cast<std::size_t>(joint[i + kLength]) + link::mavlink::kChecksumSize);
-            }
-        }
         std::copy_n(joint.begin() + static_cast<std::ptrdiff_t>(head), kTail, tail_.begin());
-    }
-    may_go_on_ = bytes.size() < kTail;
-    // Frames that begin in this read.
-    std::byte* at = bytes.data();
-    std::byte* const end = at + bytes.size();
-    while ((at = static_cast<std::byte*>(std::memchr(at, static_cast<int>(link::mavlink::kStartV2),
-                                                     static_cast<std::size_t>(end - at)))) != nullptr) {
-        if (end - at < static_cast<std::ptrdiff_t>(kHeader)) {
-            may_go_on_ = true;  // in the tail
-            break;
-        }
-        if (is_setup_signing(at)) {
-            wipe(static_cast<std::size_t>(at - bytes.data()) + kHeader,
-                 static_cast<std::size_t>(at[kLength]) + link::mavlink::kChecksumSize);
-        }
-        ++at;
     }
     if (bytes.size() >= kTail) {
         std::memcpy(tail_.data(), bytes.data() + bytes.size() - kTail, kTail);
+    }
+    may_go_on_ = bytes.size() < kTail;
+    // Frames that begin in this read, the last one first: what is overwritten lies behind the headers still to be read.
+    const std::byte* end = bytes.data() + bytes.size();
+    while (const void* const found = ::memrchr(bytes.data(), static_cast<int>(link::mavlink::kStartV2),
+                                               static_cast<std::size_t>(end - bytes.data()))) {
+        end = static_cast<const std::byte*>(found);
+        const auto at = static_cast<std::size_t>(end - bytes.data());
+        if (bytes.size() - at < kHeader) {
+            may_go_on_ = true;  // in the tail
+        } else if (is_setup_signing(end)) {
+            wipe(at + kHeader, static_cast<std::size_t>(end[kLength]) + link::mavlink::kChecksumSize);
+        }
+    }
+    for (std::size_t i = 0; is_joined && i + kHeader <= kTail + head; ++i) {  // frames that began in the reads before
+        if (is_setup_signing(joint.data() + i)) {
+            wipe(i + kHeader - kTail, static_cast<std::size_t>(joint[i + kLength]) + link::mavlink::kChecksumSize);
+        }
+    }
+    if (rest > 0) {
+        wipe(0, rest);
     }
     return erased;
 }

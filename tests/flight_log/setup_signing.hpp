@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <random>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "firmware/link/mavlink/encoder.hpp"
+#include "firmware/link/mavlink/messages.hpp"
+#include "firmware/link/mavlink/signing.hpp"
+
+// A SETUP_SIGNING frame, and how much of its key is in a log.
+
+namespace jink::test {
+
+/// 32 bytes that occur nowhere else.
+inline link::mavlink::Signing::Key secret()
+{
+    link::mavlink::Signing::Key key;
+    std::mt19937 random(77);
+    std::generate(key.begin(), key.end(), [&] { return static_cast<std::byte>(1 + random() % 200); });
+    return key;
+}
+
+inline std::vector<std::byte> setup_signing_frame()
+{
+    link::mavlink::SetupSigning message;
+    message.target_system = 1;
+    message.target_component = 196;
+    const auto key = secret();
+    std::transform(key.begin(), key.end(), message.secret_key.begin(),
+                   [](std::byte b) { return static_cast<std::uint8_t>(b); });
+    message.initial_timestamp = 12345;
+    std::array<std::byte, link::mavlink::kMaxFrame> frame{};
+    const std::size_t n = link::mavlink::encode(message, {255, 190, 3}, frame);
+    return {frame.begin(), frame.begin() + static_cast<std::ptrdiff_t>(n)};
+}
+
+/// Longest part of a key that `bytes` contain.
+inline std::size_t longest_part(std::span<const std::byte> bytes, std::span<const std::byte> key)
+{
+    std::size_t longest = 0;
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+        for (std::size_t k = 0; k < key.size(); ++k) {
+            std::size_t n = 0;
+            while (i + n < bytes.size() && k + n < key.size() && bytes[i + n] == key[k + n]) {
+                ++n;
+            }
+            longest = std::max(longest, n);
+        }
+    }
+    return longest;
+}
+
+inline std::size_t longest_part(const std::string& log)
+{
+    const auto key = secret();
+    return longest_part(std::as_bytes(std::span(log)), key);
+}
+
+}  // namespace jink::test
