@@ -19,7 +19,7 @@ namespace {
 using namespace jink;
 using hal::cortex_m::MappedRegisters;
 
-// Addresses, interrupts: ST RM0433, 2.3.2 and 19.1.2.
+// Addresses, interrupts: ST RM0433, table 8 and 19.1.2; ST's stm32h743xx.h.
 constexpr std::uintptr_t kRcc = 0x58024400;
 constexpr std::uintptr_t kPower = 0x58024800;
 constexpr std::uintptr_t kFlash = 0x52002000;
@@ -120,10 +120,29 @@ struct Board {
 
 extern "C" void jink_usart3() { Board::usart().on_interrupt(); }
 
+/// Where the chip starts. After power-on nothing may be written to any RAM, so not to the stack either, before the
+/// supply is chosen and its voltage is there (Run* mode: ST RM0433, 6.6.1, and ST's stm32h7xx_hal_pwr_ex.c). The wait
+/// is bounded: start_clocks() does the same again, and tells what is missing.
+extern "C" __attribute__((naked)) void jink_supply_handler()
+{
+    __asm volatile("ldr r0, =0x58024800\n"     // PWR
+                   "ldr r1, [r0, #0x0C]\n"     // CR3
+                   "bic r1, r1, #7\n"          // the fields of clock_tree.hpp
+                   "orr r1, r1, #2\n"          // the linear regulator
+                   "str r1, [r0, #0x0C]\n"     // counts once after power-on
+                   "ldr r2, =400000\n"         // polls
+                   "1: ldr r1, [r0, #0x04]\n"  // CSR1
+                   "tst r1, #0x2000\n"         // the voltage is there
+                   "bne 2f\n"
+                   "subs r2, #1\n"
+                   "bne 1b\n"
+                   "2: b jink_reset_handler\n");
+}
+
 namespace {
 
-__attribute__((section(".vectors"), used)) constinit const auto vectors =
-    hal::cortex_m::make_vectors<150>({{Board::kUsartInterrupt, &jink_usart3}}, &hal::cortex_m::jink_guard_handler);
+__attribute__((section(".vectors"), used)) constinit const auto vectors = hal::cortex_m::make_vectors<150>(
+    {{Board::kUsartInterrupt, &jink_usart3}}, &hal::cortex_m::jink_guard_handler, &jink_supply_handler);
 
 }  // namespace
 

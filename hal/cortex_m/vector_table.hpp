@@ -25,15 +25,17 @@ struct InterruptVector {
     Handler handler;
 };
 
-/// Reset, SysTick, and the listed interrupts. All others are faults, the NMI too.
+/// Reset, SysTick, and the listed interrupts. All others are faults, the NMI too. A `reset` of the chip's own ends with
+/// jink_reset_handler.
 template <std::size_t Interrupts>
 [[nodiscard]] consteval VectorTable<Interrupts> make_vectors(std::initializer_list<InterruptVector> interrupts,
-                                                             Handler systick = &jink_systick_handler) noexcept
+                                                             Handler systick = &jink_systick_handler,
+                                                             Handler reset = &jink_reset_handler) noexcept
 {
     using Table = VectorTable<Interrupts>;
     Table table{&_stack_top, {}};
     table.handlers.fill(&jink_fault_handler);
-    table.handlers[Table::kReset] = &jink_reset_handler;
+    table.handlers[Table::kReset] = reset;
     table.handlers[Table::kSystick] = systick;
     for (const InterruptVector& vector : interrupts) {
         table.handlers[Table::kFirstInterrupt + vector.irq] = vector.handler;

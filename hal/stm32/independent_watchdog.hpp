@@ -6,16 +6,16 @@
 
 namespace jink::hal::stm32 {
 
-/// The independent watchdog of the STM32F4 and H7 (ST RM0090, 21; RM0433, 45: the H7's window stays open). It runs on
-/// an oscillator of its own: 17 to 47 kHz on the F4 (ST DS8626), so that its time-out is known to a factor of 1.5 only;
-/// the H7's is within a tenth of 32 kHz (ST DS12110). Once started only a reset stops it.
+/// The independent watchdog of the STM32F4 and H7 (ST RM0090, 21; the H7 has the same registers, and a window, which
+/// stays open: ST's stm32h743xx.h). It runs on an oscillator of its own: 17 to 47 kHz on the F4 (ST DS8626), so that
+/// its time-out is known to a factor of 1.5 only. The H7's is better: 29.4 to 33.6 kHz on the STM32H730 (ST DS13315,
+/// table 41), and nothing here needs that. Once started only a reset stops it.
 template <RegisterBlock Registers>
 class IndependentWatchdog final : public Watchdog {
 public:
     explicit IndependentWatchdog(Registers registers) noexcept : registers_(registers) {}
 
-    /// @param milliseconds  1..4095, at the oscillator's nominal 32 kHz: the real time is between 0.68 and 1.9 of it on
-    ///                      the F4, between 0.9 and 1.1 on the H7
+    /// @param milliseconds  1..4095, at the oscillator's nominal 32 kHz: the real time is between 0.68 and 1.9 of it
     void start(std::uint32_t milliseconds) noexcept
     {
         registers_.write(kKey, kStart);

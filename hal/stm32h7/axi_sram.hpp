@@ -9,7 +9,7 @@ namespace jink::hal::stm32h7 {
 /// and Y of the STM32H743 (ST ES0392, 2.2.9). Before the AXI SRAM is used. O(1).
 ///
 /// @param debug   DBGMCU, which has the revision (ST RM0433, 60)
-/// @param matrix  the AXI interconnect (2.2)
+/// @param matrix  the AXI interconnect (2.2; ST's system_stm32h7xx.c sets the same)
 template <RegisterBlock Debug, RegisterBlock Matrix>
 void settle_axi_sram(Debug debug, Matrix matrix) noexcept
 {

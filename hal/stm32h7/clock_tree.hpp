@@ -12,7 +12,7 @@ enum class ExternalClock : std::uint8_t {
 };
 
 /// Brings the STM32H743 to 400 MHz with its linear regulator at VOS1, or as far as possible: every wait is bounded, and
-/// the result is returned. Buses: AXI and AHB 200 MHz, APB 100 MHz, timers 200 MHz (ST RM0433, 6.6, 8.5 and 4.9.1).
+/// the result is returned. Buses: AXI and AHB 200 MHz, APB 100 MHz, timers 200 MHz (ST RM0433, 6.6, 8.5 and 4.3.8).
 ///
 /// 400 MHz is what every revision of the chip does in its whole range of temperature. 480 MHz (VOS0) needs revision V
 /// and a junction below 105 C (ST DS12110). Before the clock rises, the supply is chosen, the voltage is up, and the
@@ -65,7 +65,8 @@ template <RegisterBlock Rcc, RegisterBlock Power, RegisterBlock Flash>
     if (!becomes(power, kScale, kScaleReady, kScaleReady, kPatience)) {
         return kUnchanged;
     }
-    rcc.write(kControl, rcc.read(kControl) | (external == ExternalClock::fed ? kExternalFed : 0U));
+    const std::uint32_t fed = external == ExternalClock::fed ? kExternalFed : 0U;
+    rcc.write(kControl, (rcc.read(kControl) & ~kExternalFed) | fed);  // a reset may keep it
     rcc.write(kControl, rcc.read(kControl) | kExternalOn);
     const bool is_external = becomes(rcc, kControl, kExternalReady, kExternalReady, kPatience);
     // 4 MHz, times 200, halved; the other two outputs give 200 MHz and 400 MHz to nobody.

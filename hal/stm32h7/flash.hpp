@@ -19,7 +19,7 @@ concept FaultTolerantMemory = requires(T& block, std::uint32_t offset, std::uint
     block.write(offset, value);
 };
 
-/// Bank 2 (ST RM0433, 4.9).
+/// Bank 2 (ST RM0433, 4.9; ST's stm32h743xx.h).
 struct FlashLayout {
     static constexpr std::uint32_t kKey = 0x104;
     static constexpr std::uint32_t kControl = 0x10C;
@@ -39,9 +39,9 @@ struct FlashLayout {
 /// that was cut within its program reads with a bus fault, if the code detects it: read() reports it.
 ///
 /// The program runs from bank 1: neither the processor nor interrupts stop during an operation, but program() and
-/// erase() wait for its end: 100 us for a flash word (200 us at most), 1 s for a sector (2 s at most; ST DS12110, flash
-/// memory programming, 64 bits at once). With its banks swapped (an option), the chip has other sectors at these
-/// addresses: they are read, and neither programmed nor erased.
+/// erase() wait for its end: 100 us for a flash word (200 us at most), 1 s for a sector (2 s at most; ST DS12110,
+/// tables 43 and 140: 64 bits at once, which needs a supply of 1.8 V). With its banks swapped (an option), the chip has
+/// other sectors at these addresses: they are read, and neither programmed nor erased.
 ///
 /// @tparam Memory   the sectors' memory, not cached, as ordered as devices
 /// @tparam Erasing  called with true before a sector is erased and with false afterwards: watchdogs must allow for

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The clocks of the STM32H743 against a model of RCC, PWR and the flash's wait states (ST RM0433, 4.9.1, 6.8 and 8.7).
+// The clocks of the STM32H743 against a model of RCC, PWR and the flash's wait states (ST RM0433, 4.3.8, 6.8 and 8.7).
 #include "hal/stm32h7/clock_tree.hpp"
 
 #include <gtest/gtest.h>
@@ -191,7 +191,18 @@ TEST(ClockTreeH7, ReachesFullSpeedAfterAResetThatKeepsTheSupplyLocked)
 {
     ClockModel model;
     model.supply_is_locked = true;
+    model.supply = 2;
     expect_full(start(model), model);
+}
+
+TEST(ClockTreeH7, ReachesFullSpeedFromTheCrystalAfterAResetThatKeepsTheBypass)
+{
+    ClockModel model;
+    model.control |= 1U << 18U;
+    const stm32::Clocks clocks = start(model);
+    EXPECT_EQ(clocks.source, ClockSource::crystal);
+    EXPECT_EQ(model.control & 1U << 18U, 0U);
+    expect_full(clocks, model);
 }
 
 TEST(ClockTreeH7, ReachesFullSpeedWithoutAnExternalClock)

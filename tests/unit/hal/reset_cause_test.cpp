@@ -10,7 +10,7 @@ namespace {
 
 using stm32::ResetCause;
 
-/// RCC_CSR as RM0090, 7.3.21 has it, or RCC_RSR as RM0433, 8.7 has it.
+/// RCC_CSR as RM0090, 7.3.21 has it, or RCC_RSR as RM0433, 8.4.4 and 8.7 have it.
 struct ResetModel {
     std::uint32_t offset;
     std::uint32_t remove;
@@ -68,14 +68,20 @@ TEST(ResetCause, EachIsReportedOnceOnTheH7)
 {
     constexpr std::uint32_t kProcessor = 1U << 17U;  // reset in every case
     constexpr std::uint32_t kPin = kProcessor | 1U << 22U;
+    constexpr std::uint32_t kDomains = 1U << 19U | 1U << 20U;
     EXPECT_EQ(cause_on_h7(0), ResetCause::unknown);
-    EXPECT_EQ(cause_on_h7(0x00E80000), ResetCause::power) << "the value after power-on";
+    EXPECT_EQ(cause_on_h7(0x00E80000), ResetCause::power) << "the register's value after power-on";
+    EXPECT_EQ(cause_on_h7(kPin | kDomains | 1U << 21U | 1U << 23U), ResetCause::power) << "by the table of sources";
+    EXPECT_EQ(cause_on_h7(kProcessor), ResetCause::unknown);
+    EXPECT_EQ(cause_on_h7(1U << 19U), ResetCause::unknown) << "a domain that leaves its standby";
+    EXPECT_EQ(cause_on_h7(1U << 20U), ResetCause::unknown);
     EXPECT_EQ(cause_on_h7(kPin), ResetCause::pin);
     EXPECT_EQ(cause_on_h7(kPin | 1U << 21U), ResetCause::power);
     EXPECT_EQ(cause_on_h7(kPin | 1U << 24U), ResetCause::software);
     EXPECT_EQ(cause_on_h7(kPin | 1U << 26U), ResetCause::independent_watchdog);
     EXPECT_EQ(cause_on_h7(kPin | 1U << 28U), ResetCause::other);
     EXPECT_EQ(cause_on_h7(kPin | 1U << 30U), ResetCause::other);
+    EXPECT_EQ(cause_on_h7(kPin | 1U << 26U | 1U << 28U), ResetCause::independent_watchdog) << "both watchdogs";
     EXPECT_EQ(cause_on_h7(kPin | 1U << 26U | 1U << 23U), ResetCause::power);
 }
 
