@@ -153,7 +153,7 @@ template <class T>
 void FlightLog::put_counters_of(TopicId id, std::span<const Counter<T>> counters, const T& diagnostics,
                                 TimePoint now) noexcept
 {
-    std::array<std::uint32_t, sizeof(T) / sizeof(std::uint32_t)> values;  // topics.cpp: as many as there are counters
+    std::array<std::uint32_t, sizeof(T) / sizeof(std::uint32_t)> values{};  // topics.cpp: as many as there are counters
     std::transform(counters.begin(), counters.end(), values.begin(),
                    [&](const Counter<T>& counter) { return diagnostics.*counter.member; });
     ulog::Composer message = data(id);
