@@ -17,7 +17,7 @@ def _images(m):
     first = m["targets"][memory_sizes.IMAGES[0]]
     names = {"flash of the rest": "of the flash: without reach sets, their tables and code, and without reciprocal avoidance", "code of reciprocal avoidance": "of the flash: the code of reciprocal avoidance", "tables of the reach sets": "of the flash: the reach sets' tables",
              "static RAM of the rest": "of the static RAM: without these two", "reciprocal planner": "of the static RAM: the reciprocal planner", "reach planner": "of the static RAM: the reach planner", "flash": "flash: code, constants, initial values", "data": "of the static RAM: initialised", "bss": "of the static RAM: zeroed",
-             "stack reserved": "of the static RAM: stack reserved", "core-coupled": "memory apart from the static RAM: plans, CAN (core-coupled on the stm32f405)", "stack": "stack by call graph, the deepest interrupt on top",
+             "stack reserved": "of the static RAM: stack reserved", "core-coupled": "memory apart from the static RAM: plans, log, CAN (core-coupled on the stm32f405)", "stack": "stack by call graph, the deepest interrupt on top",
              "plan stack": "the same of a plan, on its own stack",
              "painted stack of the probe": "stack used by the probe, painted (plans and updates: random problems and all records)",
              "allocators": "allocators in the image"}
