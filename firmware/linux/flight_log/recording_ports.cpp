@@ -68,7 +68,7 @@ bool KeyEraser::erase(std::span<std::byte> bytes) noexcept
     // be followed by the one that the receiver takes.
     const std::size_t head = std::min(bytes.size(), kTail);
     const bool is_joined = may_go_on_ || bytes.size() < kTail;
-    std::array<std::byte, 2 * kTail> joint{};
+    std::array<std::byte, 2 * kTail> joint;  // NOLINT(cppcoreguidelines-pro-type-member-init): set where it is read
     if (is_joined) {
         std::copy(tail_.begin(), tail_.end(), joint.begin());
         std::copy_n(bytes.begin(), head, joint.begin() + kTail);
