@@ -16,7 +16,8 @@ CYCLES = 1.5
 # From avoid::Settings; margin for cases that the hunt has not found, on instructions outside the work units; the
 # watchdog that ends a hanging step, and its time-out [ms].
 SETTINGS = pathlib.Path(__file__).resolve().parents[2] / "core/avoid/settings.hpp"
-UNITS = int(re.search(r"\ball = (\d+);", SETTINGS.read_text(encoding="utf-8"))[1])  # where no clock is known
+# Where no clock is known: the mandatory part, and the slice with usual capacities.
+UNITS = sum(int(re.search(pattern, SETTINGS.read_text(encoding="utf-8"))[1]) for pattern in (r"\ball = (\d+) \+ kInitialSlice;", r"kUsualSlice = (\d+);"))
 # firmware/app/work_rate.hpp
 RATE = pathlib.Path(__file__).resolve().parents[2] / "firmware/app/work_rate.hpp"
 UNCOUNTED, SHARE, MANDATORY = (int(re.search(rf"\b{name} =\s+([\d']+);", RATE.read_text(encoding="utf-8"))[1].replace("'", ""))
