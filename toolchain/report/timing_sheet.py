@@ -16,6 +16,7 @@ CAN_BITS = 131  # of the shortest frame with eight bytes of data and an extended
 LINE = "bytes of a serial line that is full"
 SENT = "bytes sent: what the ring holds, filled once a step"
 FRAMES = "frames of a CAN bus that is full"
+SETS_BAUD = {"mps2_an500": "firmware/mps2_an500/main.cpp", "stm32f405": "firmware/stm32/run_board.hpp"}
 
 
 def path_of(a):
@@ -28,7 +29,7 @@ def _constant(file, name):
 
 def arrivals(board):
     """[(handler, times in a tick, in words)]: nothing comes faster than the line's rate."""
-    received = int(_constant(f"firmware/{board}/main.cpp", "kBaud") / 10 * TICK)
+    received = int(_constant(SETS_BAUD[board], "kBaud") / 10 * TICK)
     sent = _constant("hal/interrupt_serial_port.hpp", "kTransmitBytes")
     if board == "stm32f405":
         return [("jink_usart1", received, LINE), ("jink_usart1", sent, SENT), ("jink_can1_receive", int(1e6 / CAN_BITS * TICK), FRAMES)]
