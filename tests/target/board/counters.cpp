@@ -74,11 +74,11 @@ CounterReader::CounterReader(const std::filesystem::path& image, const std::file
     const auto size = [&](const char* name) { return one(places, name).size; };
     const auto at = [&](const char* name) { return one(places, name).size - 1U; };
     const Symbol port = one(objects, "art()::port");
-    const Symbol coprocessor = one(objects, "jink_main::coprocessor");
-    // A static of a function, or of jink_main itself.
-    const bool of_main = std::any_of(objects.begin(), objects.end(),
-                                     [](const auto& s) { return s.first.ends_with("jink_main::endpoint"); });
-    const Symbol endpoint = one(objects, of_main ? "jink_main::endpoint" : "endpoint()::link");
+    const Symbol coprocessor = one(objects, "::coprocessor");  // of jink_main, or of run_board
+    // A static of the same function, or of one of its own.
+    const bool of_main =
+        std::any_of(objects.begin(), objects.end(), [](const auto& s) { return s.first.ends_with("::endpoint"); });
+    const Symbol endpoint = one(objects, of_main ? "::endpoint" : "endpoint()::link");
     const bool together = endpoint.size == size("jink_size_endpoint") &&
                           coprocessor.size == size("jink_size_coprocessor") &&
                           sizeof(hal::PortHealth) == size("jink_size_health") &&
