@@ -73,8 +73,8 @@ void Coprocessor::heed(Jump jump) noexcept
 void Coprocessor::take_inbox(TimePoint now) noexcept
 {
     const link::Inbox& inbox = intake_.inbox();
-    if (log_ != nullptr) {
-        log_->begin(now, inbox.log_acks);
+    if (StepLog* const log = outbox_.log(); log != nullptr) {
+        log->begin(now, inbox.log_acks);
     }
     const Configuration& c = params_.configuration();
     if (autopilot_.take(inbox)) {
@@ -97,7 +97,7 @@ void Coprocessor::take_inbox(TimePoint now) noexcept
     params_.take(inbox.params, link_, outbox_);
     apply_configuration();
     params_.continue_list(link_);
-    telemetry_.take_commands(inbox.commands, log_, params_.parameters());
+    telemetry_.take_commands(inbox.commands, outbox_.log(), params_.parameters());
     picture_.take_constraints(inbox, own_, link_, now);
     intake_.clear();
 }
@@ -174,16 +174,16 @@ std::span<const world::Track> Coprocessor::decide_and_control(TimePoint now, Ste
 
 void Coprocessor::report_state(TimePoint now, std::span<const world::Track> tracks, StepReport& report) noexcept
 {
-    const bool is_line_free = intake_.is_port_open() && is_line_empty_;
+    const bool is_line_free = intake_.is_port_open() && outbox_.is_line_empty();
     const Reported of{params_.configuration(), autopilot_, own_, picture_, decision_, control_, passive_,
                       intake_.was_bus_up()};
     report.state = Telemetry::system_state(report, of);
     telemetry_.report_to_autopilot(now, report, of, outbox_);
-    if (log_ != nullptr) {
-        report.bytes_out = last_written_;
-        log_->end({now, report, own_.measured(), tracks, params_.parameters(), diagnostics_, decision_.diagnostics(),
-                   is_line_free},
-                  link_);
+    if (StepLog* const log = outbox_.log(); log != nullptr) {
+        report.bytes_out = outbox_.last_written();
+        log->end({now, report, own_.measured(), tracks, params_.parameters(), diagnostics_, decision_.diagnostics(),
+                  is_line_free},
+                 link_);
     }
     telemetry_.prepare_last_words(now, of);
     telemetry_.report_to_bus(now, report, of, outbox_);
@@ -215,8 +215,7 @@ StepReport Coprocessor::step(TimePoint now) noexcept
     report.faults = find_faults(now, gap > kStall);
     const std::span<const world::Track> tracks = decide_and_control(now, report);
     report_state(now, tracks, report);
-    report.bytes_out = last_written_ = outbox_.write();
-    is_line_empty_ = link_.pending().empty();
+    report.bytes_out = outbox_.write();
     if ((report.faults & (bit(Fault::not_finite) | bit(Fault::late))) == 0) {
         watchdog_.feed();
     }

@@ -55,11 +55,7 @@ public:
     /// From here on every step prepares the texts of a fault handler, before it sends anything. They outlive this.
     void keep_last_words(hal::LastWords& words) noexcept { telemetry_.keep_last_words(words); }
     /// From here on this log may be asked for over the link (LOGGING_START). It outlives this.
-    void stream(StepLog& log) noexcept
-    {
-        log_ = &log;
-        outbox_.log_to(log);
-    }
+    void stream(StepLog& log) noexcept { outbox_.log_to(log); }
     /// From here on the points of the link and of the input's own port become obstacles. It outlives this, and takes
     /// nothing once this is gone.
     void use_clouds(Clouds& clouds) noexcept { picture_.use_clouds(clouds, link_); }
@@ -194,9 +190,6 @@ private:
     Telemetry telemetry_;
     std::optional<TimePoint> last_step_;
     std::uint16_t last_faults_ = 0;
-    std::uint32_t last_written_ = 0;  ///< bytes
-    bool is_line_empty_ = true;       ///< the port has taken everything
-    StepLog* log_ = nullptr;
     bool passive_ = false;
 };
 

@@ -24,6 +24,13 @@ void Outbox::send_notices() noexcept
 
 std::uint32_t Outbox::write() noexcept
 {
+    last_written_ = write_pending();
+    is_line_empty_ = link_.pending().empty();
+    return last_written_;
+}
+
+std::uint32_t Outbox::write_pending() noexcept
+{
     if (port_.health().state != hal::PortState::open) {
         link_.discard_pending();
         return 0;

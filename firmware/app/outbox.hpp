@@ -27,6 +27,8 @@ public:
 
     /// From now on the log has every text. It outlives this.
     void log_to(StepLog& log) noexcept { log_ = &log; }
+    /// nullptr: none.
+    [[nodiscard]] StepLog* log() const noexcept { return log_; }
     /// Sends a text on the link, and on the bus where there is one.
     void say(link::Severity severity, std::string_view text) noexcept;
     /// Keeps a text for send_notices(). @return false: kMaxNotices wait already
@@ -39,6 +41,10 @@ public:
     /// because it must not go out when it is no longer true.
     /// @return bytes written
     std::uint32_t write() noexcept;
+    /// Bytes of the last write().
+    [[nodiscard]] std::uint32_t last_written() const noexcept { return last_written_; }
+    /// Nothing waited for the port after the last write().
+    [[nodiscard]] bool is_line_empty() const noexcept { return is_line_empty_; }
 
 private:
     struct Notice {
@@ -46,10 +52,14 @@ private:
         Text text;
     };
 
+    std::uint32_t write_pending() noexcept;
+
     link::Link& link_;
     hal::SerialPort& port_;
     link::SensorBus* bus_;
     StepLog* log_ = nullptr;
+    std::uint32_t last_written_ = 0;
+    bool is_line_empty_ = true;
     StaticVector<Notice, kMaxNotices> notices_;
 };
 
