@@ -95,6 +95,25 @@ TEST(Swarm, ChangesPlacesAcrossTheCircle)
     }
 }
 
+TEST(Swarm, TiltedCircleStandsOnItsHeight)
+{
+    SwarmSetup setup = small();
+    setup.spread = 0.0;
+    for (const double tilt : {0.0, 30.0, 90.0}) {
+        setup.tilt = tilt;
+        double lowest = 1e9;
+        for (unsigned i = 0; i < setup.vehicles; ++i) {
+            const Scenario s = swarm_scenario(setup, 1, i);
+            lowest = std::min(lowest, s.start_position.z());
+            EXPECT_NEAR((s.mission[1] - s.start_position).norm(), 2.0 * setup.circle, 1e-9);
+        }
+        EXPECT_NEAR(lowest, setup.height, 1e-9);
+    }
+    const Vec top = swarm_scenario(setup, 1, 0).start_position;
+    const Vec bottom = swarm_scenario(setup, 1, 2).start_position;
+    EXPECT_NEAR((top - bottom - Vec(0.0, 0.0, 2.0 * setup.circle)).norm(), 0.0, 1e-9);
+}
+
 TEST(Swarm, RefusesParametersAndNumbersThatAreNone)
 {
     SwarmSetup setup = small();

@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <set>
@@ -109,14 +110,19 @@ std::string parameters_text(const Variant& variant)
     return text;
 }
 
-std::pair<std::string, double> parse_parameter(const std::string& text)
+std::map<std::string, double> parse_parameters(const std::vector<std::string>& texts)
 {
-    const std::size_t equals = text.find('=');
-    double value = 0.0;
-    if (equals == std::string::npos || equals == 0 || !read(text.substr(equals + 1), value) || !std::isfinite(value)) {
-        throw std::runtime_error("'" + text + "' is not NAME=VALUE");
+    std::map<std::string, double> values;
+    for (const std::string& text : texts) {
+        const std::size_t equals = text.find('=');
+        double value = 0.0;
+        if (equals == std::string::npos || equals == 0 || !read(text.substr(equals + 1), value) ||
+            !std::isfinite(value)) {
+            throw std::runtime_error("'" + text + "' is not NAME=VALUE");
+        }
+        values[text.substr(0, equals)] = value;
     }
-    return {text.substr(0, equals), value};
+    return values;
 }
 
 std::string EncounterSetup::manifest() const
@@ -177,10 +183,7 @@ FolderSetup read_setup(const BlockFolder& folder)
     static_cast<void>(values.count("clock") == 0 || read(values["clock"], setup.variant.board.clock));
     setup.variant.board.reduced_sets = values["reach_sets"] == "reduced";
     std::istringstream parameters(values["set"]);
-    for (std::string word; parameters >> word;) {
-        const auto [name, value] = parse_parameter(word);
-        setup.variant.parameters[name] = value;
-    }
+    setup.variant.parameters = parse_parameters({std::istream_iterator<std::string>(parameters), {}});
     setup.seeds_text = values["seeds"];
     setup.same_sources = values["sources"] == source_digest();
     return setup;

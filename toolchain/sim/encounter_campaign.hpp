@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "toolchain/sim/block_folder.hpp"
@@ -32,8 +32,9 @@ struct EncounterSetup {
 
 /// " NAME=VALUE" for each of a variant's parameters, in the order of their names.
 [[nodiscard]] std::string parameters_text(const Variant& variant);
-/// @throws std::runtime_error when the text is not NAME=VALUE with a finite value
-[[nodiscard]] std::pair<std::string, double> parse_parameter(const std::string& text);
+/// Values by name of texts NAME=VALUE; the last one of a name counts.
+/// @throws std::runtime_error when a text is not NAME=VALUE with a finite value
+[[nodiscard]] std::map<std::string, double> parse_parameters(const std::vector<std::string>& texts);
 
 /// `count` seeds from `from` on.
 [[nodiscard]] EncounterSetup consecutive_setup(std::uint64_t from, std::size_t count);

@@ -79,10 +79,7 @@ EncounterSetup setup_of(const EncountersOptions& options)
                                        [&](EncounterKind one) { return to_string(one) == options.kind; });
     setup.variant.board = options.board;
     setup.variant.planner = options.planner == "source" ? PlannerKind::source : PlannerKind::product;
-    for (const std::string& text : options.parameters) {
-        const auto [name, value] = parse_parameter(text);
-        setup.variant.parameters[name] = value;
-    }
+    setup.variant.parameters = parse_parameters(options.parameters);
     const std::string refusal = refusal_of(setup.variant);
     if (!refusal.empty()) {
         throw std::runtime_error("encounters: --set: " + refusal);

@@ -11,6 +11,7 @@
 
 #include "firmware/app/work_rate.hpp"
 #include "toolchain/sim/daemon.hpp"
+#include "toolchain/sim/encounter_campaign.hpp"
 #include "toolchain/sim/encounters_command.hpp"
 #include "toolchain/sim/envelope.hpp"
 #include "toolchain/sim/in_process.hpp"
@@ -45,6 +46,7 @@ struct Options {
     unsigned count = 50;
     std::uint64_t seed = 1;
     unsigned at_once = 24;
+    std::vector<std::string> parameters;  ///< NAME=VALUE
     Board board;
     bool quiet = false;
     bool judge = false;
@@ -253,10 +255,16 @@ int rates(const std::vector<unsigned>& clocks)
 
 int crowd(const Options& options)
 {
+    Variant variant;
+    variant.parameters = parse_parameters(options.parameters);
+    if (const std::string refusal = refusal_of(variant); !refusal.empty()) {
+        throw std::runtime_error("crowd: --set: " + refusal);
+    }
     std::vector<ReportedFlight> flights;
     for (unsigned i = 0; i < options.count; ++i) {
         Scenario scenario = crowded_scenario(options.seed + i);
         scenario.board = options.board;
+        scenario.parameters = variant.parameters;
         flights.push_back(report_on(scenario, fly_recorded(scenario, options.steps), false));
     }
     return finish(options, flights);
@@ -286,6 +294,8 @@ int main(int argc, char** argv)
         cli.add_subcommand("random", "random encounters in process, each judged for avoidability");
     CLI::App* crowd_command = cli.add_subcommand(
         "crowd", "32 intruders at once in a ring of pillars, in process: the fullest world, not the fairest");
+    crowd_command->add_option("--set", options.parameters,
+                              "NAME=VALUE: a parameter of the co-processor, any number of them");
     for (CLI::App* command : {fly_command, crowd_command}) {
         command->add_option("--record-steps", options.steps,
                             "in process: folder for NAME.steps, what each step read and wrote");

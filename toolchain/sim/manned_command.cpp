@@ -56,18 +56,14 @@ CLI::App& add_manned(CLI::App& cli, MannedOptions& options)
 
 int run_manned(const MannedOptions& options, std::ostream& out)
 {
-    std::map<std::string, double> parameters;
-    for (const std::string& text : options.parameters) {
-        parameters.insert_or_assign(parse_parameter(text).first, parse_parameter(text).second);
-    }
     Variant variant;
-    variant.parameters = parameters;
+    variant.parameters = parse_parameters(options.parameters);
     if (const std::string refusal = refusal_of(variant); !refusal.empty()) {
         throw std::runtime_error("manned: --set: " + refusal);
     }
     std::size_t broken = 0;
     for (const std::string& file : options.models) {
-        const std::vector<MannedResult> results = fly_all(EncounterModel::load(file), options, parameters);
+        const std::vector<MannedResult> results = fly_all(EncounterModel::load(file), options, variant.parameters);
         const MannedSummary sum = summary_of(results);
         out << std::filesystem::path(file).stem().string() << ", " << options.sensor << ": " << sum.flown
             << " encounters; near mid-air ratio ";

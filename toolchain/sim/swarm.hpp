@@ -21,7 +21,8 @@ struct SwarmSetup {
     unsigned vehicles = 20;   ///< 2 to 64
     double circle = 10.0;     ///< its radius [m]
     double sector = 360.0;    ///< of the circle on which the vehicles start, evenly spread [deg]
-    double height = 20.0;     ///< above home [m]
+    double tilt = 0.0;        ///< of the circle's plane: at 90 the first vehicle starts above the others [deg]
+    double height = 20.0;     ///< of the circle's lowest point above home [m]
     double cruise = 1.0;      ///< [m/s]
     double slow = 1.0;        ///< share of it that every second vehicle flies at
     double spread = 0.1;      ///< largest start offset from the vehicle's place, per axis [m]

@@ -35,14 +35,8 @@ SwarmSetup setup_of(const SwarmOptions& options)
 {
     SwarmSetup setup = options.setup;
     setup.stack = options.stack == "px4" ? Stack::px4 : Stack::ardupilot;
-    for (const std::string& text : options.parameters) {
-        const auto [name, value] = parse_parameter(text);
-        setup.parameters[name] = value;
-    }
-    for (const std::string& text : options.others) {
-        const auto [name, value] = parse_parameter(text);
-        setup.others[name] = value;
-    }
+    setup.parameters = parse_parameters(options.parameters);
+    setup.others = parse_parameters(options.others);
     if (options.daemon && (!setup.others.empty() || setup.slow != 1.0)) {
         throw std::runtime_error("--daemon flies vehicles that are all alike");
     }
@@ -97,6 +91,7 @@ CLI::App& add_swarm(CLI::App& cli, SwarmOptions& options)
                  "touched, a goal was missed or a rule of the protocol was broken");
     command->add_option("--vehicles", s.vehicles, "how many, default 20")->check(CLI::Range(2U, 64U));
     command->add_option("--circle", s.circle, "its radius, default 10 [m]")->check(CLI::Range(1.0, 1000.0));
+    command->add_option("--tilt", s.tilt, "of its plane, 90: vertical, default 0 [deg]")->check(CLI::Range(0.0, 90.0));
     command->add_option("--sector", s.sector, "of the circle over which they start, default 360 [deg]")
         ->check(CLI::Range(1.0, 360.0));
     command->add_option("--slow", s.slow, "share of the cruise speed of every second vehicle, default 1")

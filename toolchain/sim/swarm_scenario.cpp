@@ -15,11 +15,20 @@ constexpr double kClearStart = 3.0;
 constexpr double kSlowest = 0.2;
 constexpr double kFastest = 0.6;
 
+constexpr double kRadian = std::numbers::pi / 180.0;  // [1/deg]
+
+/// The circle's lowest point is `height` above home.
+Vec centre_of(const SwarmSetup& setup)
+{
+    return {0.0, 0.0, setup.height + setup.circle * std::sin(kRadian * setup.tilt)};
+}
+
+/// From the centre.
 Vec on_circle(const SwarmSetup& setup, unsigned index)
 {
-    constexpr double kHalfTurn = 180.0;  // [deg]
-    const double angle = std::numbers::pi * setup.sector / kHalfTurn * index / setup.vehicles;
-    return {setup.circle * std::cos(angle), setup.circle * std::sin(angle), setup.height};
+    const double angle = kRadian * setup.sector * index / setup.vehicles;
+    const double tilt = kRadian * setup.tilt;
+    return setup.circle * Vec(std::cos(angle) * std::cos(tilt), std::sin(angle), std::cos(angle) * std::sin(tilt));
 }
 
 /// An obstacle that flies from outside across the inner part of the circle.
@@ -35,7 +44,7 @@ Threat obstacle(const SwarmSetup& setup, Random& random, unsigned number)
     const double aside = uniform(random, 0.0, 0.7 * setup.circle);
     const Vec aim = aside * Vec(std::cos(to), std::sin(to), 0.0);
     sphere.velocity = (aim - sphere.position).normalized() * uniform(random, kSlowest, kFastest) * setup.cruise;
-    sphere.position.z() = setup.height + uniform(random, -1.0, 1.0);
+    sphere.position.z() = centre_of(setup).z() + uniform(random, -1.0, 1.0);
     return sphere;
 }
 
@@ -78,11 +87,12 @@ Scenario swarm_scenario(const SwarmSetup& setup, std::uint64_t seed, unsigned in
     for (unsigned i = 0; i < index; ++i) {
         off = off_place();  // draws of the vehicles before this one
     }
-    s.start_position = on_circle(setup, index) + off;
-    const Vec opposite(-on_circle(setup, index).x(), -on_circle(setup, index).y(), setup.height);
-    s.mission = {s.start_position, opposite};
+    const Vec centre = centre_of(setup);
+    const Vec place = on_circle(setup, index);
+    s.start_position = centre + place + off;
+    s.mission = {s.start_position, centre - place};
     if (setup.back) {
-        s.mission.push_back(on_circle(setup, index));
+        s.mission.push_back(centre + place);
     }
     s.reached = 0.5;
     for (unsigned i = 0; i < setup.obstacles; ++i) {
