@@ -126,7 +126,7 @@ class Bench:
 
     def __init__(self, build, plugin, folder, sim):
         self.build, self.plugin, self.folder, self.sim = build, plugin, pathlib.Path(folder), sim
-        self.files = sorted(p for p in self.folder.glob("*.json") if p.name != "counts.json")
+        self.files = sorted(self.folder.glob("*.*.json"))
 
     def one(self, target, case, stage_file=None):
         """Always in a fresh probe: counts must not depend on earlier counts."""
@@ -135,37 +135,39 @@ class Bench:
         probe.close()
         return answer
 
-    def step(self, target, record, folder, stage_file=None):
-        """The step of a recorded flight that its record names."""
-        flight, index = record["flight"], record["step"]
-        probe = targets.open_probe(target, self.build, self.plugin, stage_file, kind=flights.StepProbe)
-        answer = [probe.ask(step) for step in flights.read(pathlib.Path(folder) / f"{flight}.steps")[:index + 1]][-1]
-        probe.close()
-        return answer
+    def steps(self, target, scene, crowd, stage_file=None):
+        """The answers to all steps of a crowd, flown with the methods of a scene and the work of a target."""
+        with tempfile.TemporaryDirectory() as folder:
+            # The ending of a crowd is irrelevant here.
+            subprocess.run([self.sim, "crowd", "--seed", str(crowd), "--count", "1", "--set", f"JNK_METHODS={scenes.CROWDS[scene]}", *board(target),
+                            "--record-steps", folder, "--quiet"], check=False, stdout=subprocess.DEVNULL)
+            probe = targets.open_probe(target, self.build, self.plugin, stage_file, kind=flights.StepProbe)
+            answers = [probe.ask(step) for step in flights.read(pathlib.Path(folder) / f"crowd_{crowd}.steps")]
+            probe.close()
+        return answers
 
-    def fly(self, folder, target, crowds=()):
-        """Flies the flights whose steps are counted, in process with the work of a target, and writes the line's traffic to `folder`."""
+    def step(self, target, record, stage_file=None):
+        """The most expensive step of the crowd that a record names, and its number."""
+        answers = self.steps(target, record["scene"], record["crowd"], stage_file)
+        return max(((a, i) for i, a in enumerate(answers)), key=lambda item: item[0].instructions)
+
+    def fly(self, folder, target):
+        """Flies the scenarios whose steps are counted, in process with the work of a target, and writes the line's traffic to `folder`."""
         scenario = pathlib.Path(__file__).resolve().parents[2] / "tests/scenario"
         files = [str(scenario / f"{name}.yaml") for name in scenes.FLIGHTS]
         subprocess.run([self.sim, "fly", *files, *board(target), "--record-steps", folder, "--quiet"], check=True, stdout=subprocess.DEVNULL)
-        for seed in crowds:
-            # The ending of a crowd is irrelevant here.
-            subprocess.run([self.sim, "crowd", "--seed", str(seed), "--count", "1", *board(target), "--record-steps", folder, "--quiet"], check=False,
-                           stdout=subprocess.DEVNULL)
 
-    def crowds(self):
-        """Seeds of the crowds that records need."""
-        return sorted({json.loads(p.read_text(encoding="utf-8"))["crowd"] for p in self.files if p.name.startswith("step_")})
-
-    def _records(self, target, result, stage_files, folder):
+    def _records(self, target, result, stage_files):
         for path in self.files:
             record = json.loads(path.read_text(encoding="utf-8"))
             if "case" in record:
                 answer = self.one(target, read_case(path)[1], stage_files[0])
                 status = answer.status
-            else:
-                answer = self.step(target, record, folder, stage_files[1])
-                status = f"{answer.tracks} tracks, {answer.obstacles} obstacles"
+            elif target in (record["target"], *(t for t in TARGETS if t not in CLOCKS)):
+                answer, number = self.step(target, record, stage_files[1])
+                status = f"step {number}: {answer.tracks} tracks, {answer.obstacles} obstacles"
+            else:  # the crowd of another board, whose flight is another one
+                continue
             result["records"][path.stem] = {"instructions": answer.instructions, "status": status, "work": answer.work}
             if answer.by_stage:
                 result["stages"][path.stem] = {n: c for n, c in zip(stages.NAMES, answer.by_stage) if c}
@@ -184,25 +186,23 @@ class Bench:
     def of_target(self, target):
         result = {"records": {}, "stages": {}, "typical": {}, "typical_stages": {}}
         with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryDirectory() as flown:
-            self.fly(flown, target, self.crowds())
+            self.fly(flown, target)
             stage_files = [str(pathlib.Path(folder) / name) for name in ("plan", "step")]
             if target == STAGED:
                 stages.write(targets.program_of(target, self.build), target, stage_files[0])
                 stages.write(targets.program_of(target, self.build, flights.StepProbe.PROGRAM), target, stage_files[1])
             else:
                 stage_files = [None, None]
-            self._records(target, result, stage_files, flown)
+            self._records(target, result, stage_files)
             for name, (_, count, case_of) in scenes.SAMPLES.items():
                 probe = targets.open_probe(target, self.build, self.plugin, stage_files[0])
                 self._sample(name, [probe.ask(on_board(case_of(seed), target)) for seed in range(count)], result)
                 probe.close()
             probe = targets.open_probe(target, self.build, self.plugin, stage_files[1], kind=flights.StepProbe)
-            steps = {"step_flights": scenes.FLIGHTS, "step_crowd": [f"crowd_{seed}" for seed in self.crowds()[:1]]}
-            for name, names in steps.items():
-                answers = [probe.ask(step) for flight in names for step in flights.read(pathlib.Path(flown) / f"{flight}.steps")]
-                if answers:
-                    self._sample(name, answers, result)
+            flown_steps = [probe.ask(step) for flight in scenes.FLIGHTS for step in flights.read(pathlib.Path(flown) / f"{flight}.steps")]
             probe.close()
+            for name, answers in zip(scenes.STEPS, (flown_steps, self.steps(target, "step_full", scenes.CROWD, stage_files[1]))):
+                self._sample(name, answers, result)
         return result
 
     def all(self, names):
@@ -217,11 +217,7 @@ class Bench:
             record = json.loads(path.read_text(encoding="utf-8"))
             kind = targets.Probe if "case" in record else flights.StepProbe
             names = stages.write_functions(targets.program_of(target, self.build, kind.PROGRAM), target, file)
-            if "case" in record:
-                answer = self.one(target, read_case(path)[1], file)
-            else:
-                self.fly(folder, target, [record["crowd"]])
-                answer = self.step(target, record, folder, file)
+            answer = self.one(target, read_case(path)[1], file) if "case" in record else self.step(target, record, file)[0]
         first = sorted(zip(answer.by_stage, names), reverse=True)[:most]
         rows = [[name, count] for count, name in first if name]
         return [*rows, ["all others", answer.instructions - sum(count for _, count in rows)]]
@@ -247,24 +243,27 @@ class Bench:
         lines = subprocess.run([self.sim, "rates", *map(str, clocks)], check=True, capture_output=True, text=True).stdout.splitlines()
         return {line.split()[0]: dict(zip(("instructions", "units", "slice"), map(int, line.split()[1:]))) for line in lines}
 
-    def hunt_steps(self, target, seed, count, report):
-        """The most expensive step of `count` crowds: (instructions, crowd, step)."""
-        worst = (0, 0, 0)
-        for crowd in range(seed, seed + count):
-            with tempfile.TemporaryDirectory() as folder:
-                self.fly(folder, target, [crowd])
-                probe = targets.open_probe(target, self.build, self.plugin, kind=flights.StepProbe)
-                answers = [probe.ask(step) for step in flights.read(pathlib.Path(folder) / f"crowd_{crowd}.steps")]
-                probe.close()
-            most = max((a.instructions, crowd, i) for i, a in enumerate(answers))
-            worst = max(worst, most)
-            report(f"crowd {crowd}: {len(answers)} steps, the costliest {most[0]} instructions (step {most[2]})")
-        return worst
+    def hunt_steps(self, target, scene, seeds, workers):
+        """The most expensive step of many crowds, (instructions, crowd, step), and the number of all steps."""
+        def of_crowd(seed):
+            answers = self.steps(target, scene, seed)
+            return max((a.instructions, seed, i) for i, a in enumerate(answers)), len(answers)
+        with concurrent.futures.ThreadPoolExecutor(workers) as pool:
+            found = list(pool.map(of_crowd, seeds))
+        return max(most for most, _ in found), sum(count for _, count in found)
 
 
-def write_step(folder, worst, how):
-    instructions, crowd, step = worst
-    path = pathlib.Path(folder) / f"step_full.crowd_{crowd}.json"
-    record = {"scene": "step_full", "how": how, "crowd": crowd, "flight": f"crowd_{crowd}", "step": step}
-    path.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+def write_crowd(folder, scene, target, crowd, how):
+    path = pathlib.Path(folder) / f"{scene}.{target}.json"
+    path.write_text(json.dumps({"scene": scene, "how": how, "target": target, "crowd": crowd}, indent=1) + "\n", encoding="utf-8")
     return path
+
+
+def note_hunt(folder, scene, target, evaluations, command, most):
+    """Keeps of each scene and target the hunt with most evaluations, whether it beat the record or not."""
+    path = pathlib.Path(folder) / "hunts.json"
+    kept = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+    name = f"{scene}.{target}"
+    if evaluations >= kept.get(name, {}).get("evaluations", 0):
+        kept[name] = {"evaluations": evaluations, "most": most, "command": command}
+        path.write_text(compact_json(dict(sorted(kept.items()))), encoding="utf-8")

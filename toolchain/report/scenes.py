@@ -12,6 +12,8 @@ import targets
 SIXTEEN = [(2, 3, 3), (4, 1, 3), (8, 0, 3), (2, 7, 1), (4, 3, 1), (8, 1, 1), (16, 0, 1), (2, 7, 2), (4, 3, 2), (8, 1, 2), (16, 0, 2)]
 THIRTY_TWO = [(4, 3, 3), (2, 7, 3), (8, 1, 3), (16, 0, 3), (4, 7, 1), (8, 3, 2), (2, 15, 1), (32, 0, 2)]
 DEFAULT = targets.Case(0)
+# Sets of methods (JNK_METHODS), other than all.
+METHODS = {1: "geometric", 2: "reach sets", 3: "geometric and reach sets", 4: "reciprocal", 5: "geometric and reciprocal", 6: "reach sets and reciprocal"}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -29,6 +31,7 @@ class Scene:
     mixed: bool = False  # `threats` counts tracks and obstacles together
     study: bool = False  # Pinheiro's run-time study: 5 m/s along a level leg, a static threat of 1 m on the leg 10 m
                          # ahead
+    methods: int = 0  # of an update, held fixed: JNK_METHODS; 0: as free as the rest
 
     def random(self, r):
         tracks = r.randint(*self.threats)
@@ -252,6 +255,8 @@ def tidy(case, scene):
                        else tuple(_within(x, -1000.0, 1000.0) for x in b), _within(radius, 0.05, 10.0) if kind != 1 else 0.0, yaw)
                       for kind, a, b, radius, yaw in case.obstacles]
     case.shared &= (1 << len(case.tracks)) - 1
+    if scene.methods:
+        case.methods = scene.methods
     if scene.study:
         _as_studied(case)
     if not scene.solids:
@@ -286,6 +291,7 @@ SCENES = {scene.name: scene for scene in (
     Scene("orca_full", "reciprocal decision, 32 tracks and 96 obstacles at most", "reciprocal", (1, 32), (0, 96), SIXTEEN, 0, False, True),
     Scene("update_full", "update at full capacity", "update", (1, 32), (0, 96), THIRTY_TWO, 8, True),
     Scene("update_solids", "update, solids of any shape", "update", (1, 32), (0, 96), THIRTY_TWO, 8, True, True),
+    *(Scene(f"update_set_{n}", f"update at full capacity, {of}", "update", (1, 32), (0, 96), THIRTY_TWO, 8, True, methods=n) for n, of in METHODS.items()),
 )}
 
 
@@ -317,4 +323,8 @@ SAMPLES = {
 # Scenarios whose flown steps are counted.
 FLIGHTS = ["clear_pass", "crossing", "head_on", "pillar", "px4_documented_short", "scan_wall", "tuning_3", "tuning_4"]
 STEPS = {"step_flights": "step, 8 of the named scenarios", "step_crowd": "step, a crowd of 32 intruders in a ring of pillars"}
-TITLES = {**{name: scene.title for name, scene in SCENES.items()}, "step_full": "step, 32 tracks at once in a ring of pillars"}
+CROWD = 1  # whose steps are counted as typical ones
+# Crowds, of which the most expensive step counts: {scene: JNK_METHODS}.
+CROWDS = {"step_full": 7, **{f"step_set_{n}": n for n in METHODS}}
+TITLES = {**{name: scene.title for name, scene in SCENES.items()}, "step_full": "step, 32 tracks at once in a ring of pillars",
+          **{f"step_set_{n}": f"step, the same, {of}" for n, of in METHODS.items()}}
