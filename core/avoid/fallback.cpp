@@ -44,7 +44,8 @@ float slant(float limit, const vehicle::VehicleLimits& limits) noexcept
 class MaxClearance {
 public:
     MaxClearance(const world::Situation& s, const Settings& settings, Seconds horizon, WorkBudget& budget) noexcept
-        : s_(s), budget_(budget), horizon_(horizon),
+        : s_(s), corner_(s.limits.half_extents.minCoeff()), inner_limits_(vehicle::widened(s.limits, -corner_)),
+          inner_(world::with_limits(s, inner_limits_)), budget_(budget), horizon_(horizon),
           step_(std::max(settings.prediction_step, horizon / static_cast<float>(kMaxPathPoints - 2)))
     {
         // As many chords as steps of this length: the first two are short.
@@ -60,14 +61,29 @@ public:
             return -world::kSeparationCap;
         }
         path::predict_velocity_command(s_.own, command, horizon_, later_step_, s_.limits, flight_);
-        const world::Separation least = world::least_separation(s_, flight_, horizon_, budget_, s_.rules.escape,
-                                                                {cut, world::kSeparationCap, nearest_, uncertainty_});
-        nearest_ = least.margin < cut || nearest_.kind == world::ThreatKind::none ? least.against : nearest_;
-        return least.margin;
+        const float corner = rounded_ ? corner_ : 0.0F;
+        const world::Separation least =
+            world::least_separation(rounded_ ? inner_ : s_, flight_, horizon_, budget_, s_.rules.escape,
+                                    {cut + corner, world::kSeparationCap, nearest_, uncertainty_});
+        const float margin = least.margin - corner;
+        nearest_ = margin < cut || nearest_.kind == world::ThreatKind::none ? least.against : nearest_;
+        return margin;
     }
 
-    /// From now on this share of the uncertainty counts.
-    void count(float uncertainty) noexcept { uncertainty_ = uncertainty; }
+    /// From now on all of the uncertainty counts, and the whole box.
+    void count_all() noexcept
+    {
+        uncertainty_ = 1.0F;
+        rounded_ = false;
+    }
+    /// From now on this share of the uncertainty counts, and the box with its corners rounded off: all that is within
+    /// its least half extent of the inner box. Where the box cannot be kept clear, equal margins are then equal
+    /// distances from the vehicle, whatever side the threat passes on.
+    void count_likely(float uncertainty) noexcept
+    {
+        uncertainty_ = uncertainty;
+        rounded_ = true;
+    }
 
     /// From now on commands to the side on which the other one of two vehicles passes count as worse. Of the threat
     /// that was met last.
@@ -110,12 +126,16 @@ public:
 
 private:
     const world::Situation& s_;
+    float corner_;                         ///< radius of the rounded corners [m]
+    vehicle::VehicleLimits inner_limits_;  ///< with the box that is left without them
+    world::Situation inner_;
     WorkBudget& budget_;
     Seconds horizon_;
     Seconds step_;
     Seconds later_step_ = 0.0F;
     world::ThreatRef nearest_;
     float uncertainty_ = 1.0F;
+    bool rounded_ = false;
     Vec3 side_ = Vec3::Zero();
     float handicap_ = 0.0F;
     Prediction flight_;
@@ -219,24 +239,24 @@ Fallback choose_fallback(const world::Situation& s, const world::Way& way, const
     }
     search.pass_by_rule();
     const float likely = s.rules.k_sigma > kLikely ? kLikely / s.rules.k_sigma : 1.0F;
-    search.count(likely);
+    search.count_likely(likely);
     Fallback best{world::ManoeuvreKind::brake, Vec3::Zero(), -world::kSeparationCap};
     search_escapes(s, way, search, best);
     search.hold_on(brake, 0.0F, best);
     if (best.margin >= 0.0F) {
-        search.count(1.0F);
+        search.count_all();
         const Fallback clear = search_clear(s, way, search, best);
         if (clear.margin >= 0.0F) {
             // NOLINTNEXTLINE(performance-no-automatic-move): numbers alone, which are copied either way
             return clear;
         }
-        search.count(likely);
+        search.count_likely(likely);
     }
     if (escaped) {
         search.hold_on(*previous, kHoldOn, best);
     }
     if (best.margin >= 0.0F) {
-        search.count(1.0F);
+        search.count_all();
         best.margin = search.margin_of(best.command, 0.0F);
     }
     return best;

@@ -12,7 +12,7 @@ struct Fallback {
     world::ManoeuvreKind kind = world::ManoeuvreKind::brake;
     Vec3 command = Vec3::Zero();  ///< [m/s]; of hold_turn the sense of the turn in z
     /// Least predicted over the horizon [m]; >= 0: clear of all that is possible. Below 0: not clear, and how far tells
-    /// little (of what is likely alone, or cut off).
+    /// little (of what is likely alone, to the box with rounded corners, or cut off).
     float margin = 0.0F;
 };
 
@@ -22,12 +22,15 @@ struct Fallback {
 ///
 /// Of a multirotor: brake when that is clear, else `previous` (may be null) when that is. Else of brake and 26 commands
 /// at cruise speed (8 courses level, climbing and descending; straight up and down), refined three times by steps of
-/// course and of climb to all sides, the clear one of greatest least margin. Where none is clear: the one of greatest
-/// least margin to threats within one standard deviation in place of FlightRules::k_sigma; `previous` then, unless
-/// another is 0.02 m better. What is surely in contact says nothing of which way is the better one: threats that are
-/// grown by all that is possible overlap. The check of a command ends once it is no better than the best so far.
-/// Without `budget` it counts as the worst. O(80 * points * threats). Against 721 commands in 600 random close calls:
-/// 4 mm behind on average, 0.31 m at most (tests/property/core/avoid/fallback_test.cpp).
+/// course and of climb to all sides: the one of greatest least margin to threats within one standard deviation in place
+/// of FlightRules::k_sigma. The box has rounded corners here: it is shrunk by its least half extent, and the margin is
+/// measured to all that is within that distance of the rest. Where the box cannot be kept clear, a threat past a corner
+/// is then as near as one past a face at the same distance. That command is taken where the whole box is clear of all
+/// that is possible; else the clear one of greatest least margin; where none is clear, `previous`, unless the command
+/// is 0.02 m better. What is surely in contact says nothing of which way is the better one: threats that are grown by
+/// all that is possible overlap. The check of a command ends once it is no better than the best so far. Without
+/// `budget` it counts as the worst. O(80 * points * threats). Against 721 commands in 600 random close calls: 3 mm
+/// behind on average, 0.24 m at most (tests/property/core/avoid/fallback_test.cpp).
 [[nodiscard]] Fallback choose_fallback(const world::Situation& situation, const world::Way& way,
                                        const Fallback* previous, const Settings& settings, WorkBudget& budget) noexcept;
 

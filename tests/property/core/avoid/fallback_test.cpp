@@ -28,15 +28,24 @@ Vec3 direction(int i, int n)
     return {r * std::cos(azimuth), r * std::sin(azimuth), z};
 }
 
-/// Greatest least margin of 240 directions at three speeds, and of braking.
-float best_of_721(const Situation& s, Vec3& command)
+/// Margin to the box with rounded corners: a cube of half extent 1 m becomes a sphere.
+float rounded_margin(const Flight& f, const Vec3& command)
+{
+    Flight inner = f;
+    inner.scene.limits.half_extents.setZero();
+    WorkBudget budget(kPlenty);
+    return command_margin(inner.scene.situation(), command, Settings{}, budget) - f.scene.limits.half_extents.x();
+}
+
+/// Greatest least `margin(command)` of 240 directions at three speeds, and of braking.
+template <class Margin>
+float best_of_721(const Situation& s, Vec3& command, Margin&& margin)
 {
     float best = -1e9F;
     const auto attempt = [&](const Vec3& c) {
-        WorkBudget budget(kPlenty);
-        const float margin = command_margin(s, c, Settings{}, budget);
-        if (margin > best) {
-            best = margin;
+        const float its = margin(c);
+        if (its > best) {
+            best = its;
             command = c;
         }
     };
@@ -47,6 +56,14 @@ float best_of_721(const Situation& s, Vec3& command)
         }
     }
     return best;
+}
+
+float best_of_721(const Situation& s, Vec3& command)
+{
+    return best_of_721(s, command, [&](const Vec3& c) {
+        WorkBudget budget(kPlenty);
+        return command_margin(s, c, Settings{}, budget);
+    });
 }
 
 /// Threats so near that braking alone is not clear.
@@ -86,7 +103,10 @@ TEST(FallbackAgainstAFineSearch, FindsAWayOutWhereThereIsOne)
             continue;
         }
         const float fine = best_of_721(s, command);
-        const float behind = std::min(fine, kPlentyOfRoom) - chosen.margin;
+        const float rounded = best_of_721(s, command, [&](const Vec3& c) { return rounded_margin(f, c); });
+        // The best for the rounded box is taken where it is clear of the whole box, else the best for the whole box.
+        const float off = std::min(rounded, kPlentyOfRoom) - rounded_margin(f, chosen.command);
+        const float behind = chosen.margin >= 0.0F ? std::min(off, std::min(fine, kPlentyOfRoom) - chosen.margin) : off;
         ++tried;
         missed += fine >= 0.1F && chosen.margin < 0.0F ? 1 : 0;
         sum += std::max(behind, 0.0F);
@@ -127,9 +147,8 @@ TEST(FallbackAgainstAFineSearch, WhereNothingIsClearWhatIsLikelyDecides)
         EXPECT_LT(best_of_721(s, command), 0.1F) << "seed " << kSeed << ", case " << i << ": something is clear";
         const Vec3 of_all = command;
         f.scene.rules.k_sigma = 1.0F;
-        const Situation likely = f.scene.situation();
-        const float fine = best_of_721(likely, command);
-        const auto likely_margin = [&](const Vec3& c) { return command_margin(likely, c, Settings{}, budget); };
+        const auto likely_margin = [&](const Vec3& c) { return rounded_margin(f, c); };
+        const float fine = best_of_721(s, command, likely_margin);
         const float behind = fine - likely_margin(chosen.command);
         EXPECT_LT(behind, 0.4F) << "seed " << kSeed << ", case " << i;
         differ += likely_margin(of_all) < fine - 0.1F ? 1 : 0;

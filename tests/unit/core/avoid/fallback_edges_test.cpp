@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/avoid/fallback.hpp"
+#include "core/base/random.hpp"
 #include "tests/numbers.hpp"
 #include "tests/unit/core/avoid/fakes.hpp"
 
@@ -26,6 +27,14 @@ float margin_under(const Flight& f, const Vec3& command)
 {
     WorkBudget budget(kPlenty);
     return command_margin(f.scene.situation(), command, Settings{}, budget);
+}
+
+/// The same for the box with rounded corners: a cube of half extent 1 m becomes a sphere.
+float rounded_margin_under(const Flight& f, const Vec3& command)
+{
+    Flight inner = f;
+    inner.scene.limits.half_extents.setZero();
+    return margin_under(inner, command) - f.scene.limits.half_extents.x();
 }
 
 /// Static, with its box exactly on the floor and, with `ceiling`, directly below the ceiling.
@@ -97,7 +106,7 @@ TEST(FallbackEdges, WhereNothingIsClearTheFormerOneStaysUnlessAnotherIsBetter)
         const float turned = course + 0.01F * static_cast<float>(i);
         Fallback before{ManoeuvreKind::velocity,
                         Vec3(level * std::cos(turned), level * std::sin(turned), first.command.z()), 0.0F};
-        before.margin = margin_under(f, before.command);
+        before.margin = rounded_margin_under(f, before.command);
         const float better = first.margin - before.margin;
         if (std::abs(better - kHoldOn) < 1e-3F || better <= 0.0F) {
             continue;
@@ -115,6 +124,42 @@ TEST(FallbackEdges, WhereNothingIsClearTheFormerOneStaysUnlessAnotherIsBetter)
     }
     EXPECT_GT(stays, 2);
     EXPECT_GT(changes, 2);
+}
+
+/// Late intruders that no command keeps out of the box: the command with the greatest margin to the box may lead past a
+/// corner, or past a face where another leaves more distance.
+TEST(FallbackEdges, WhereTheBoxCannotBeKeptClearTheDistanceDecides)
+{
+    Random random(20261128);
+    int differ = 0;
+    for (int i = 0; i < 300; ++i) {
+        Flight f;
+        f.scene.own.velocity = Vec3(random.uniform(2, 5), random.uniform(-2, 2), random.uniform(-1, 1));
+        const Vec3 velocity(random.uniform(-9, -3), random.uniform(-6, 6), random.uniform(-2, 2));
+        const float meets = random.uniform(0.5F, 0.9F);
+        const Vec3 miss(random.uniform(-0.8F, 0.8F), random.uniform(-0.8F, 0.8F), random.uniform(-0.8F, 0.8F));
+        f.scene.track(f.scene.own.position + (f.scene.own.velocity - velocity) * meets + miss, velocity, 1.2F);
+        const Fallback chosen = chosen_for(f);
+        if (chosen.margin >= 0.0F) {
+            continue;
+        }
+        const float kept = rounded_margin_under(f, chosen.command);
+        Vec3 of_box = Vec3::Zero();
+        float most = margin_under(f, of_box);
+        for (const float climb : {-3.0F, -1.5F, 0.0F, 1.5F, 3.0F}) {
+            for (int k = 0; k < 48; ++k) {
+                const float course = 2.0F * kPi * static_cast<float>(k) / 48.0F;
+                const float level = std::sqrt(25.0F - climb * climb);
+                const Vec3 command(level * std::cos(course), level * std::sin(course), climb);
+                EXPECT_LT(rounded_margin_under(f, command), kept + 0.25F) << "case " << i;
+                const float margin = margin_under(f, command);
+                of_box = margin > most ? command : of_box;
+                most = std::max(most, margin);
+            }
+        }
+        differ += rounded_margin_under(f, of_box) < kept - 0.1F ? 1 : 0;
+    }
+    EXPECT_GT(differ, 20);
 }
 
 /// A command that is not finite is the worst there is, and never stays.
