@@ -114,13 +114,19 @@ public:
         return false;
     }
 
-    /// `other` is the best where no command is better than it by more than `by` [m].
-    void hold_on(const Fallback& other, float by, Fallback& best) noexcept
+    /// A command of this margin against the best.
+    [[nodiscard]] bool is_as_good(float margin, const Vec3& command, const Fallback& best) const noexcept
     {
-        const float least = best.margin - by - handicap_of(best.command) + handicap_of(other.command);
-        const float margin = margin_of(other.command, least);
+        return margin - handicap_of(command) >= best.margin - handicap_of(best.command);
+    }
+
+    /// `brake` is the best where no command is better.
+    void prefer(const Fallback& brake, Fallback& best) noexcept
+    {
+        const float least = best.margin - handicap_of(best.command) + handicap_of(brake.command);
+        const float margin = margin_of(brake.command, least);
         if (margin >= least && margin > -world::kSeparationCap) {
-            best = {other.kind, other.command, margin};
+            best = {brake.kind, brake.command, margin};
         }
     }
 
@@ -240,9 +246,11 @@ Fallback choose_fallback(const world::Situation& s, const world::Way& way, const
     search.pass_by_rule();
     const float likely = s.rules.k_sigma > kLikely ? kLikely / s.rules.k_sigma : 1.0F;
     search.count_likely(likely);
+    // First, so that it is compared with whatever the budget lasts for.
+    const float former = escaped ? search.margin_of(previous->command) : -world::kSeparationCap;
     Fallback best{world::ManoeuvreKind::brake, Vec3::Zero(), -world::kSeparationCap};
     search_escapes(s, way, search, best);
-    search.hold_on(brake, 0.0F, best);
+    search.prefer(brake, best);
     if (best.margin >= 0.0F) {
         search.count_all();
         const Fallback clear = search_clear(s, way, search, best);
@@ -250,10 +258,9 @@ Fallback choose_fallback(const world::Situation& s, const world::Way& way, const
             // NOLINTNEXTLINE(performance-no-automatic-move): numbers alone, which are copied either way
             return clear;
         }
-        search.count_likely(likely);
     }
-    if (escaped) {
-        search.hold_on(*previous, kHoldOn, best);
+    if (former > -world::kSeparationCap && search.is_as_good(former + kHoldOn, previous->command, best)) {
+        best = {previous->kind, previous->command, former};
     }
     if (best.margin >= 0.0F) {
         search.count_all();

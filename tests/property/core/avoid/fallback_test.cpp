@@ -121,7 +121,18 @@ TEST(FallbackAgainstAFineSearch, FindsAWayOutWhereThereIsOne)
     EXPECT_LT(sum / tried, 0.005) << "mean [m]";
 }
 
-/// Threats that are known badly, so that nothing is clear: the way that is best for what is likely is taken.
+/// A close call with threats that are known badly, so that nothing is clear.
+Flight unsure_call(Random& random)
+{
+    Flight f = close_call(random);
+    for (world::Track& track : f.scene.tracks) {
+        track.sigma_position = random.uniform(0.2F, 1.0F);
+        track.sigma_velocity = random.uniform(0.0F, 0.6F);
+    }
+    return f;
+}
+
+/// The way that is best for what is likely is taken.
 TEST(FallbackAgainstAFineSearch, WhereNothingIsClearWhatIsLikelyDecides)
 {
     constexpr std::uint64_t kSeed = 20261126;
@@ -130,11 +141,7 @@ TEST(FallbackAgainstAFineSearch, WhereNothingIsClearWhatIsLikelyDecides)
     int differ = 0;
     double sum = 0.0;
     for (int i = 0; i < 600; ++i) {
-        Flight f = close_call(random);
-        for (world::Track& track : f.scene.tracks) {
-            track.sigma_position = random.uniform(0.2F, 1.0F);
-            track.sigma_velocity = random.uniform(0.0F, 0.6F);
-        }
+        Flight f = unsure_call(random);
         Vec3 command = Vec3::Zero();
         const Situation s = f.scene.situation();
         WorkBudget budget(kPlenty);
@@ -162,6 +169,45 @@ TEST(FallbackAgainstAFineSearch, WhereNothingIsClearWhatIsLikelyDecides)
     EXPECT_GT(tried, 100);
     EXPECT_GT(differ, 10);
     EXPECT_LT(sum / tried, 0.02) << "mean [m]";
+}
+
+/// A search that ends by its budget does not swing between commands: what is flown is compared first.
+TEST(FallbackAgainstAFineSearch, WithAnyBudgetTheFormerOneIsLeftForABetterOneAlone)
+{
+    constexpr std::uint64_t kSeed = 20261128;
+    constexpr float kBetter = 0.02F - 1e-4F;
+    Random random(kSeed);
+    int left = 0;
+    int kept = 0;
+    for (int i = 0; i < 400; ++i) {
+        Flight f = unsure_call(random);
+        const Situation s = f.scene.situation();
+        const Fallback previous{world::ManoeuvreKind::velocity,
+                                vehicle::clamped_velocity(direction(static_cast<int>(random.below(240)), 240),
+                                                          s.limits.cruise_speed, s.limits),
+                                -1.0F};
+        WorkBudget whole(kPlenty);
+        static_cast<void>(choose_fallback(s, world::way_of(s), &previous, Settings{}, whole));
+        WorkBudget one(kPlenty);
+        static_cast<void>(command_margin(s, previous.command, Settings{}, one));
+        // Enough for braking and, twice, for what is flown.
+        const std::uint32_t units = 4 * (kPlenty - one.left()) + random.below(kPlenty - whole.left());
+        WorkBudget budget(units);
+        const Fallback chosen = choose_fallback(s, world::way_of(s), &previous, Settings{}, budget);
+        if (chosen.margin >= 0.0F) {
+            continue;
+        }
+        if (chosen.command == previous.command) {
+            ++kept;
+            continue;
+        }
+        f.scene.rules.k_sigma = 1.0F;
+        EXPECT_GE(rounded_margin(f, chosen.command), rounded_margin(f, previous.command) + kBetter)
+            << "seed " << kSeed << ", case " << i << ", budget " << units;
+        ++left;
+    }
+    EXPECT_GT(left, 100);
+    EXPECT_GT(kept, 20);
 }
 
 }  // namespace
