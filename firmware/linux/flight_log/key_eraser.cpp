@@ -26,6 +26,9 @@ bool is_setup_signing(const std::byte* header)
 
 bool KeyEraser::erase(std::span<std::byte> bytes) noexcept
 {
+    if (bytes.empty()) {
+        return false;
+    }
     bool erased = false;
     const std::size_t rest = std::exchange(secret_, 0);
     const auto wipe = [&](std::size_t from, std::size_t length) {
