@@ -26,6 +26,7 @@ Logging::Logging(const LogOptions& options, const flightlog::Setup& setup, fligh
     flightlog::FlightLog::Limits limits;
     limits.record += (setup.has_bus ? flightlog::FlightLog::Limits::kOfBus : 0U) +
                      (setup.logs_cloud ? flightlog::FlightLog::Limits::kOfClouds : 0U);
+    limits.record = writer_ ? limits.record : 0U;  // the page does not show records
     log_.emplace(*output, limits, setup.stored);
 }
 

@@ -26,6 +26,13 @@ std::size_t ReadAhead::read(std::span<std::byte> into) noexcept
     return n;
 }
 
+hal::PortHealth ReadAhead::health() const noexcept
+{
+    hal::PortHealth health = device_.health();
+    health.bytes_in -= end_ - begin_;
+    return health;
+}
+
 void CanReadAhead::pump() noexcept
 {
     std::copy(frames_.begin() + static_cast<std::ptrdiff_t>(begin_),
@@ -44,6 +51,13 @@ bool CanReadAhead::receive(hal::CanFrame& frame) noexcept
     }
     frame = frames_[begin_++];
     return true;
+}
+
+hal::CanHealth CanReadAhead::health() const noexcept
+{
+    hal::CanHealth health = device_.health();
+    health.frames_in -= end_ - begin_;
+    return health;
 }
 
 }  // namespace jink::host

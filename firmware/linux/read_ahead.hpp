@@ -33,7 +33,8 @@ public:
 
     [[nodiscard]] std::size_t read(std::span<std::byte> into) noexcept override;
     [[nodiscard]] std::size_t write(std::span<const std::byte> from) noexcept override { return device_.write(from); }
-    [[nodiscard]] hal::PortHealth health() const noexcept override { return device_.health(); }
+    /// The device's, but bytes that wait here are not counted yet: `bytes_in` is what read() returned.
+    [[nodiscard]] hal::PortHealth health() const noexcept override;
 
 private:
     hal::SerialPort& device_;
@@ -52,7 +53,8 @@ public:
 
     [[nodiscard]] bool receive(hal::CanFrame& frame) noexcept override;
     [[nodiscard]] bool send(const hal::CanFrame& frame) noexcept override { return device_.send(frame); }
-    [[nodiscard]] hal::CanHealth health() const noexcept override { return device_.health(); }
+    /// The device's, but frames that wait here are not counted yet.
+    [[nodiscard]] hal::CanHealth health() const noexcept override;
 
 private:
     hal::CanPort& device_;

@@ -49,6 +49,7 @@ int main(int argc, char** argv)
     host::TwoOutputs both(queue, feed);
     test::FlightOptions options;
     options.without_log = mode == "none";
+    options.without_records = mode == "page";
     options.output = mode == "page" ? static_cast<flightlog::Output*>(&feed) : mode == "both" ? &both : nullptr;
     options.output = options.output != nullptr ? options.output : &queue;
     std::uint64_t steps = 0;

@@ -28,16 +28,17 @@
 
 namespace jink::test {
 
-/// A log in memory.
+/// A log in memory, from which signing keys are removed as from files.
 class MemoryLog final : public flightlog::Output {
 public:
     explicit MemoryLog(const flightlog::Setup& setup)
-        : bytes_(flightlog::head_of_file(flightlog::definitions_of(setup), 0, "jink_test", 0))
+        : bytes_(flightlog::head_of_file(flightlog::definitions_of(setup), 0, "jink_test", 0)), passed_(bytes_.size())
     {
     }
     bool add(std::span<const std::byte> messages, std::uint32_t count) noexcept override
     {
         bytes_.insert(bytes_.end(), messages.begin(), messages.end());
+        passed_ += keys_.pass(std::span(bytes_).subspan(passed_));
         counts_.messages += count;
         return true;
     }
@@ -48,6 +49,8 @@ public:
 
 private:
     std::vector<std::byte> bytes_;
+    std::size_t passed_ = 0;  ///< bytes without keys
+    flightlog::KeyFilter keys_;
     flightlog::LogCounts counts_;
 };
 
@@ -82,6 +85,7 @@ struct FlightOptions {
     BesideFlight beside;
     flightlog::Output* output = nullptr;  ///< in place of a log in memory
     bool without_log = false;             ///< nothing is recorded
+    bool without_records = false;         ///< messages alone are composed, as for a live page without a log
 };
 
 /// A step and its log. tests/flight_log/cost_check.py counts the instructions below this function.
@@ -165,6 +169,7 @@ inline RecordedFlight fly_recorded(const sim::Scenario& scenario, const sim::Tim
     flightlog::Output& output = options.output != nullptr ? *options.output : memory;
     flightlog::FlightLog::Limits limits;
     limits.record += flightlog::FlightLog::Limits::kOfBus + flightlog::FlightLog::Limits::kOfClouds;
+    limits.record = options.without_records ? 0 : limits.record;
     flightlog::FlightLog log(output, limits, setup.stored);
     flightlog::RecordingSerialPort line(cable->port(), log.recorder(), flightlog::Port::line);
     flightlog::RecordingCanPort can(tunnel->wire().port(1), log.recorder());

@@ -43,10 +43,14 @@ inline std::vector<std::byte> setup_signing_frame()
 /// Longest part of a key that `bytes` contain.
 inline std::size_t longest_part(std::span<const std::byte> bytes, std::span<const std::byte> key)
 {
+    std::array<std::vector<std::size_t>, 256> places;  // of each byte in the key
+    for (std::size_t k = 0; k < key.size(); ++k) {
+        places[static_cast<std::size_t>(key[k])].push_back(k);
+    }
     std::size_t longest = 0;
     for (std::size_t i = 0; i < bytes.size(); ++i) {
-        for (std::size_t k = 0; k < key.size(); ++k) {
-            std::size_t n = 0;
+        for (const std::size_t k : places[static_cast<std::size_t>(bytes[i])]) {
+            std::size_t n = 1;
             while (i + n < bytes.size() && k + n < key.size() && bytes[i + n] == key[k + n]) {
                 ++n;
             }

@@ -35,12 +35,20 @@ private:
     std::size_t size_ = 0;
 };
 
-/// `from`, then zeros. Not inlined: with the bounds that its caller knows the compiler copies in a loop of its own,
-/// which takes more instructions than the library's from about 100 bytes on.
-[[gnu::noinline]] void copy_padded(std::span<const std::byte> from, std::span<std::byte> to) noexcept
+/// Index among kHalSizes of the smallest size that holds n bytes, 1 to the largest.
+std::size_t size_index(std::size_t n) noexcept
 {
-    std::memcpy(to.data(), from.data(), from.size());
-    std::memset(to.data() + from.size(), 0, to.size() - from.size());
+    constexpr std::size_t kUnit = kHalSizes.front();
+    static constexpr auto kOf = [] {
+        std::array<std::uint8_t, kHalSizes.back() / kUnit> of{};
+        for (std::size_t i = 0; i < of.size(); ++i) {
+            while (kHalSizes[of[i]] < (i + 1) * kUnit) {
+                ++of[i];
+            }
+        }
+        return of;
+    }();
+    return kOf[(n - 1) / kUnit];
 }
 
 /// "conflict with track 7 in 3.2 s, faults none": why something changed.
@@ -69,13 +77,15 @@ std::uint32_t track_in_conflict(const app::StepReport& report, app::Coprocessor&
 }
 
 FlightLog::FlightLog(Output& output, const Limits& limits, const files::ParamValues& parameters)
-    : output_(output), recorder_(limits.record), parameters_(parameters)
+    : output_(output),
+      recorder_(limits.record, kPartHead, limits.record / kHalSizes.back() * kPartHead + 4 * kMaxMessage),
+      messages_(recorder_.end().memory()), parameters_(parameters)
 {
 }
 
 void FlightLog::flush() noexcept
 {
-    output_.add(std::span(messages_).first(size_), count_);
+    output_.add(messages_.first(size_), count_);
     size_ = 0;
     count_ = 0;
 }
@@ -93,32 +103,54 @@ void FlightLog::put_text(ulog::Level level, TimePoint now, std::string_view text
     keep(line.put(level).put(stamp_of(now)).put_text(text));
 }
 
-/// Cuts the record into parts; each is a message of the smallest size that holds it.
+/// Completes a message that holds a part of the record, n bytes behind its head: zeros up to the smallest size that
+/// holds them. @return size of the message
+std::size_t FlightLog::put_part(std::size_t at, std::size_t n, std::uint32_t number, std::uint16_t flags,
+                                TimePoint now) noexcept
+{
+    const std::size_t index = size_index(n);
+    const std::size_t size = kHalSizes[index];
+    const HalHead head{stamp_of(now), sequence_ + number, static_cast<std::uint16_t>(n), flags};
+    std::memset(messages_.data() + at + kPartHead + n, 0, size - n);
+    ulog::Composer part(messages_.subspan(at, kPartHead + size));
+    part.begin(ulog::Type::data).put(static_cast<std::uint16_t>(static_cast<std::size_t>(TopicId::hal) + index));
+    static_cast<void>(part.put(head).room(size));
+    return part.end().size();
+}
+
+/// Cuts a record into parts, the last one first.
+void FlightLog::put_parts(std::size_t size, std::uint32_t parts, TimePoint now) noexcept
+{
+    constexpr std::size_t kLargest = kHalSizes.back();
+    for (std::uint32_t i = parts; i-- > 0; size = i * kLargest) {
+        const std::size_t n = size - i * kLargest;
+        const std::size_t at = i * kMaxMessage;
+        std::memmove(messages_.data() + at + kPartHead, messages_.data() + kPartHead + i * kLargest, n);
+        const std::size_t end = at + put_part(at, n, i,
+                                              static_cast<std::uint16_t>((i + 1 < parts ? HalHead::kGoesOn : 0U) |
+                                                                         (i > 0 ? HalHead::kContinues : 0U)),
+                                              now);
+        size_ = std::max(size_, end);
+    }
+}
+
+/// The record becomes one message or several, where it was composed.
 void FlightLog::put_record(TimePoint now) noexcept
 {
-    const EntryWriter& entries = recorder_.end();
-    std::span<const std::byte> rest = entries.record();
-    if (entries.overflowed()) {
+    EntryWriter& entries = recorder_.end();
+    const std::size_t n = entries.record().size();
+    const auto parts = static_cast<std::uint32_t>((n + kHalSizes.back() - 1) / kHalSizes.back());
+    if (entries.overflowed()) [[unlikely]] {
         ++sequence_;
         output_.lose();
-        rest = {};
+    } else if (parts == 1) [[likely]] {
+        size_ = put_part(0, n, 0, 0, now);
+    } else if (parts > 1) {
+        put_parts(n, parts, now);
     }
-    while (!rest.empty()) {
-        const std::size_t n = std::min<std::size_t>(rest.size(), kHalSizes.back());
-        std::size_t size = 0;
-        while (kHalSizes[size] < n) {
-            ++size;
-        }
-        const auto id = static_cast<TopicId>(static_cast<std::size_t>(TopicId::hal) + size);
-        const bool goes_on = n < rest.size();
-        const HalHead head{stamp_of(now), sequence_++, static_cast<std::uint16_t>(n),
-                           goes_on ? HalHead::kGoesOn : std::uint16_t{0}};
-        ulog::Composer part = data(id);
-        copy_padded(rest.first(n), part.put(head).room(kHalSizes[size]));
-        keep(part);
-        rest = rest.subspan(n);
-    }
-    recorder_.clear();
+    count_ = entries.overflowed() ? 0 : parts;
+    sequence_ += count_;
+    entries.clear();
 }
 
 void FlightLog::put_sent_texts(TimePoint now) noexcept

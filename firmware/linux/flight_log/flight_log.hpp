@@ -21,11 +21,12 @@ namespace jink::flightlog {
 /// The control loop's side of a flight log: composes what a step did and gives it to an output. Never waits, and
 /// allocates nothing after its construction.
 ///
-/// Memory: the largest record of a step (Limits) and 80 KiB.
+/// Memory: the largest record of a step (Limits) and 24 KiB.
 class FlightLog {
 public:
     struct Limits {
         /// Of one record [bytes]: 4 KiB read and 8 KiB written on the line, and 2500 closed areas of up to 61 bytes.
+        /// 0: no records, for an output that does not use them.
         std::size_t record = 192U * 1024U;
         static constexpr std::size_t kOfBus = 96U * 1024U;      ///< 512 frames received, and as many sent
         static constexpr std::size_t kOfClouds = 192U * 1024U;  ///< app::kMaxCloudBytesPerStep
@@ -56,10 +57,10 @@ private:
     /// A new message of kMaxMessage at most, to be given to `keep`.
     [[nodiscard]] ulog::Composer message(ulog::Type type) noexcept
     {
-        if (messages_.size() - size_ < kMaxMessage) {
+        if (messages_.size() - size_ < kMaxMessage) [[unlikely]] {
             flush();
         }
-        return ulog::Composer(std::span(messages_).subspan(size_, kMaxMessage)).begin(type);
+        return ulog::Composer(messages_.subspan(size_, kMaxMessage)).begin(type);
     }
     [[nodiscard]] ulog::Composer data(TopicId id) noexcept
     {
@@ -75,6 +76,9 @@ private:
     void put(TopicId id, const T& topic) noexcept;
     void put_text(ulog::Level level, TimePoint now, std::string_view text) noexcept;
     void put_record(TimePoint now) noexcept;
+    [[gnu::cold]] void put_parts(std::size_t size, std::uint32_t parts, TimePoint now) noexcept;
+    [[nodiscard]] std::size_t put_part(std::size_t at, std::size_t n, std::uint32_t number, std::uint16_t flags,
+                                       TimePoint now) noexcept;
     void put_sent_texts(TimePoint now) noexcept;
     void put_own(const app::StepReport& report, const app::Coprocessor& coprocessor, TimePoint now) noexcept;
     void put_tracks(app::Coprocessor& coprocessor, TimePoint now) noexcept;
@@ -86,11 +90,15 @@ private:
     void put_changes(const app::StepReport& report, std::uint32_t conflict_id, TimePoint now) noexcept;
     void put_changed_parameters(const app::Parameters& parameters) noexcept;
 
+    static constexpr std::size_t kPartHead = ulog::kDataHeader + HalHead::kBytes;
+    static constexpr std::size_t kMaxMessage = kPartHead + kHalSizes.back();
+
     Output& output_;
     HalRecorder recorder_;
-    static constexpr std::size_t kMaxMessage = ulog::kDataHeader + HalHead::kBytes + kHalSizes.back();
-    std::array<std::byte, 4 * kMaxMessage> messages_{};  ///< of this step, not yet given to the output
-    std::size_t size_ = 0;                               ///< of them [bytes]
+    /// Of this step, not yet given to the output. They begin where the record is composed: its parts stay in place but
+    /// for the heads between them, and the other messages follow.
+    std::span<std::byte> messages_;
+    std::size_t size_ = 0;  ///< of them [bytes]
     std::uint32_t count_ = 0;
     files::ParamValues parameters_;
     std::uint32_t generation_ = 0;

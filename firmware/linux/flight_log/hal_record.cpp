@@ -11,21 +11,7 @@ constexpr unsigned kRemote = 2U;
 constexpr unsigned kFd = 4U;
 constexpr unsigned kRateSwitch = 8U;
 
-template <class H>
-H from_numbers(const Health& numbers)
-{
-    H health;
-    health.state = static_cast<decltype(health.state)>(numbers[0]);
-    for (std::size_t i = 0; i < kCountersOf<H>.size(); ++i) {
-        health.*kCountersOf<H>[i] = numbers[i + 1];
-    }
-    return health;
-}
-
 }  // namespace
-
-hal::PortHealth to_port_health(const Health& numbers) noexcept { return from_numbers<hal::PortHealth>(numbers); }
-hal::CanHealth to_can_health(const Health& numbers) noexcept { return from_numbers<hal::CanHealth>(numbers); }
 
 void EntryWriter::frame(const hal::CanFrame& f) noexcept
 {
@@ -68,7 +54,44 @@ Entry EntryReader::kind() const noexcept
 
 Port EntryReader::port() const noexcept
 {
-    return rest_.empty() ? Port::line : static_cast<Port>(static_cast<unsigned>(rest_.front()) >> 4U);
+    return rest_.empty() ? Port::line : static_cast<Port>(static_cast<unsigned>(rest_.front()) >> 4U & 0x07U);
+}
+
+bool EntryReader::lost_key() const noexcept
+{
+    return !rest_.empty() && (rest_.front() & kKeyOverwritten) != std::byte{0};
+}
+
+bool EntryReader::pass_content(Entry kind) noexcept
+{
+    switch (kind) {
+    case Entry::none: return false;
+    case Entry::begin:
+    case Entry::shut_down: static_cast<void>(number<std::int64_t>()); return good_;
+    case Entry::read: static_cast<void>(bytes(count())); return good_;
+    case Entry::write:
+        static_cast<void>(count());
+        static_cast<void>(bytes(count()));
+        return good_;
+    case Entry::health: {
+        hal::CanHealth any;  // the most counters
+        static_cast<void>(count());
+        health(any);
+        return good_;
+    }
+    case Entry::can_frame:
+    case Entry::can_sent:
+    case Entry::can_refused: static_cast<void>(frame()); return good_;
+    case Entry::can_nothing: return good_;
+    case Entry::areas:
+        static_cast<void>(number<std::int64_t>());
+        for (std::uint64_t n = count(); n > 0 && good_; --n) {
+            static_cast<void>(area());
+        }
+        return good_;
+    case Entry::stored: static_cast<void>(number<std::uint32_t>()); return good_;
+    }
+    return false;
 }
 
 std::uint64_t EntryReader::count() noexcept
@@ -129,16 +152,6 @@ app::Constraint EntryReader::area() noexcept
         a.about = about;
     }
     return a;
-}
-
-void EntryReader::health(Health& numbers) noexcept
-{
-    const auto differs = number<std::uint16_t>();
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-        if ((differs >> i & 1U) != 0) {
-            numbers[i] += count();
-        }
-    }
 }
 
 }  // namespace jink::flightlog

@@ -17,8 +17,8 @@
 #include "hal/port_health.hpp"
 
 // The record of one step: everything that enters and leaves the co-processor, in the order of the calls. A record is a
-// row of entries. An entry is a byte (kind in the low four bits, port in the high four) and what EntryReader reads
-// after it; counts are LEB128 numbers. docs/guides/flight_log.md has the table.
+// row of entries. An entry is a byte (kind in the low four bits, port in the three above, kKeyOverwritten) and what
+// EntryReader reads after it; counts are LEB128 numbers. docs/guides/flight_log.md has the table.
 
 namespace jink::flightlog {
 
@@ -35,8 +35,9 @@ enum class Entry : std::uint8_t {
     areas,        ///< all closed areas, set from outside of the link
     stored,       ///< the state file holds the parameters of this generation
     shut_down,    ///< the end of the run: its time
-    key_removed,  ///< the bytes read before had a signing key in them, which is overwritten with zeros
 };
+/// Of an entry's first byte: what was read had a part of a signing key in it, which is overwritten with zeros.
+inline constexpr std::byte kKeyOverwritten{0x80};
 
 enum class Port : std::uint8_t { line, cloud, can };
 inline constexpr std::size_t kPorts = 3;
@@ -60,30 +61,44 @@ static_assert(sizeof(hal::PortHealth) == (1 + kCountersOf<hal::PortHealth>.size(
                   sizeof(hal::CanHealth) == (1 + kCountersOf<hal::CanHealth>.size()) * sizeof(std::uint64_t),
               "a counter is missing");
 
-/// A port's health as numbers: the state, then the counters in their order.
-inline constexpr std::size_t kHealthNumbers = 1 + kCountersOf<hal::CanHealth>.size();
-using Health = std::array<std::uint64_t, kHealthNumbers>;
-template <class H>
-[[nodiscard]] Health to_numbers(const H& health) noexcept
+// What a call makes of the health before it, if nothing else happens: recorder and replay count alike, and a record has
+// only what differs from that.
+inline void count_read(hal::PortHealth& health, std::size_t bytes) noexcept { health.bytes_in += bytes; }
+inline void count_write(hal::PortHealth& health, std::size_t offered, std::size_t accepted) noexcept
 {
-    Health numbers{static_cast<std::uint64_t>(health.state)};
-    for (std::size_t i = 0; i < kCountersOf<H>.size(); ++i) {
-        numbers[i + 1] = health.*kCountersOf<H>[i];
-    }
-    return numbers;
+    health.bytes_out += accepted;
+    health.bytes_refused += offered - accepted;
 }
-[[nodiscard]] hal::PortHealth to_port_health(const Health& numbers) noexcept;
-[[nodiscard]] hal::CanHealth to_can_health(const Health& numbers) noexcept;
+inline void count_received(hal::CanHealth& health) noexcept { ++health.frames_in; }
+inline void count_sent(hal::CanHealth& health, bool accepted) noexcept
+{
+    ++(accepted ? health.frames_out : health.frames_refused);
+}
 
-/// Bit i: number i differs.
+/// Whether state and all counters are the same. In each call of a port's health: without a branch for each counter.
+template <class H>
+[[nodiscard]] bool is_same(const H& a, const H& b) noexcept
+{
+    constexpr std::size_t kCounters = sizeof(H) - sizeof(std::uint64_t);  // behind the state
+    const std::byte* const of_a = std::as_bytes(std::span(&a, 1)).last(kCounters).data();
+    const std::byte* const of_b = std::as_bytes(std::span(&b, 1)).last(kCounters).data();
+    std::uint64_t differs = a.state != b.state ? 1U : 0U;
+    for (std::size_t i = 0; i < kCounters; i += sizeof(std::uint64_t)) {
+        std::uint64_t in_a = 0;
+        std::uint64_t in_b = 0;
+        std::memcpy(&in_a, of_a + i, sizeof in_a);
+        std::memcpy(&in_b, of_b + i, sizeof in_b);
+        differs |= in_a ^ in_b;
+    }
+    return differs == 0;
+}
+/// Bit 0: the state differs; bit i + 1: counter i does.
 template <class H>
 [[nodiscard]] unsigned differences(const H& before, const H& now) noexcept
 {
     unsigned differs = now.state != before.state ? 1U : 0U;
     for (std::size_t i = 0; i < kCountersOf<H>.size(); ++i) {
-        if (now.*kCountersOf<H>[i] != before.*kCountersOf<H>[i]) [[unlikely]] {
-            differs |= 2U << i;
-        }
+        differs |= now.*kCountersOf<H>[i] != before.*kCountersOf<H>[i] ? 2U << i : 0U;
     }
     return differs;
 }
@@ -91,43 +106,47 @@ template <class H>
 /// Writes entries into memory that is allocated once. A record that does not fit is `overflowed`.
 class EntryWriter {
 public:
-    explicit EntryWriter(std::size_t capacity) : bytes_(capacity) {}
+    /// @param before, behind  bytes of memory() that are not the record's
+    explicit EntryWriter(std::size_t capacity, std::size_t before = 0, std::size_t behind = 0)
+        : bytes_(before + capacity + behind), begin_(bytes_.data() + before), end_(begin_ + capacity)
+    {
+    }
+    EntryWriter(const EntryWriter&) = delete;
+    EntryWriter& operator=(const EntryWriter&) = delete;
 
     void clear() noexcept
     {
-        size_ = 0;
+        at_ = begin_;
         overflowed_ = false;
     }
-    void entry(Entry kind, Port port = Port::line) noexcept
-    {
-        byte(static_cast<unsigned>(kind) | static_cast<unsigned>(port) << 4U);
-    }
+    void entry(Entry kind, Port port = Port::line) noexcept { byte(first_byte(kind, port)); }
     /// The same, and a count.
     void entry(Entry kind, Port port, std::uint64_t value) noexcept
     {
-        entry(kind, port);
-        count(value);
-    }
-    void count(std::uint64_t value) noexcept
-    {
-        if (bytes_.size() - size_ < kLongestCount) [[unlikely]] {
+        if (left() <= kLongestCount) [[unlikely]] {
+            entry(kind, port);
             count_at_end(value);
             return;
         }
-        std::byte* at = bytes_.data() + size_;
-        for (; value >= 0x80U; value >>= 7U) {
-            *at++ = static_cast<std::byte>(static_cast<unsigned>(value & 0x7FU) | 0x80U);
+        *at_ = static_cast<std::byte>(first_byte(kind, port));
+        at_ = put_count(at_ + 1, value);
+    }
+    void count(std::uint64_t value) noexcept
+    {
+        if (left() < kLongestCount) [[unlikely]] {
+            count_at_end(value);
+            return;
         }
-        *at++ = static_cast<std::byte>(value);
-        size_ = static_cast<std::size_t>(at - bytes_.data());
+        at_ = put_count(at_, value);
     }
     void bytes(std::span<const std::byte> bytes) noexcept
     {
-        if (bytes.size() > bytes_.size() - size_) {
+        if (bytes.size() > left()) [[unlikely]] {
             overflowed_ = true;
         } else if (!bytes.empty()) {
-            std::memcpy(bytes_.data() + size_, bytes.data(), bytes.size());
-            size_ += bytes.size();
+            std::byte* const at = at_;
+            at_ += bytes.size();
+            std::memcpy(at, bytes.data(), bytes.size());
         }
     }
     template <class T>
@@ -152,23 +171,34 @@ public:
         }
     }
 
-    /// The newest n bytes, to be changed.
-    [[nodiscard]] std::span<std::byte> newest(std::size_t n) noexcept
-    {
-        return overflowed_ ? std::span<std::byte>() : std::span(bytes_).subspan(size_ - n, n);
-    }
-    [[nodiscard]] std::span<const std::byte> record() const noexcept { return std::span(bytes_).first(size_); }
+    [[nodiscard]] std::span<const std::byte> record() const noexcept { return {begin_, at_}; }
+    /// The record with the bytes before and behind it, for one who needs the record no more.
+    [[nodiscard]] std::span<std::byte> memory() noexcept { return bytes_; }
     [[nodiscard]] bool overflowed() const noexcept { return overflowed_; }
 
 private:
     void byte(unsigned value) noexcept
     {
-        if (size_ < bytes_.size()) {
-            bytes_[size_++] = static_cast<std::byte>(value);
+        if (left() > 0) [[likely]] {
+            *at_++ = static_cast<std::byte>(value);
         } else {
             overflowed_ = true;
         }
     }
+    [[nodiscard]] static unsigned first_byte(Entry kind, Port port) noexcept
+    {
+        return static_cast<unsigned>(kind) | static_cast<unsigned>(port) << 4U;
+    }
+    /// @return behind the count
+    static std::byte* put_count(std::byte* at, std::uint64_t value) noexcept
+    {
+        for (; value >= 0x80U; value >>= 7U) {
+            *at++ = static_cast<std::byte>(static_cast<unsigned>(value & 0x7FU) | 0x80U);
+        }
+        *at = static_cast<std::byte>(value);
+        return at + 1;
+    }
+    [[nodiscard]] std::size_t left() const noexcept { return static_cast<std::size_t>(end_ - at_); }
 
     /// Byte by byte, because the record is nearly full.
     void count_at_end(std::uint64_t value) noexcept;
@@ -176,7 +206,9 @@ private:
     static constexpr std::size_t kLongestCount = 10;  ///< of 64 bits, 7 to a byte
 
     std::vector<std::byte> bytes_;
-    std::size_t size_ = 0;
+    std::byte* begin_;
+    std::byte* end_;
+    std::byte* at_ = begin_;  ///< where the next entry goes
     bool overflowed_ = false;
 };
 
@@ -186,11 +218,16 @@ public:
     explicit EntryReader(std::span<const std::byte> record = {}) noexcept : rest_(record) {}
 
     [[nodiscard]] bool empty() const noexcept { return rest_.empty(); }
+    /// Bytes that are not read yet.
+    [[nodiscard]] std::size_t left() const noexcept { return rest_.size(); }
     [[nodiscard]] bool is_good() const noexcept { return good_; }
-    /// The next entry's kind and port, which stay.
+    /// The next entry's kind, port and kKeyOverwritten, which stay.
     [[nodiscard]] Entry kind() const noexcept;
     [[nodiscard]] Port port() const noexcept;
+    [[nodiscard]] bool lost_key() const noexcept;
     void pass() noexcept { static_cast<void>(number<std::uint8_t>()); }
+    /// The content of an entry of this kind. @return false: there is no such kind, or bytes are missing
+    bool pass_content(Entry kind) noexcept;
 
     [[nodiscard]] std::uint64_t count() noexcept;
     [[nodiscard]] std::span<const std::byte> bytes(std::uint64_t n) noexcept;
@@ -204,7 +241,19 @@ public:
     }
     [[nodiscard]] hal::CanFrame frame() noexcept;
     [[nodiscard]] app::Constraint area() noexcept;
-    void health(Health& numbers) noexcept;
+    /// Changes `health` by what was recorded.
+    template <class H>
+    void health(H& health) noexcept
+    {
+        const unsigned differs = number<std::uint16_t>();
+        if ((differs & 1U) != 0) {
+            health.state = static_cast<decltype(health.state)>(static_cast<std::uint64_t>(health.state) + count());
+        }
+        for (std::size_t i = 0; i < kCountersOf<H>.size(); ++i) {
+            health.*kCountersOf<H>[i] += (differs >> (i + 1) & 1U) != 0 ? count() : 0U;
+        }
+        good_ = good_ && differs >> (kCountersOf<H>.size() + 1) == 0;
+    }
 
 private:
     std::span<const std::byte> rest_;

@@ -40,11 +40,6 @@ bool is_log(const std::string& name)
     return name.starts_with(kPrefix) && name.ends_with(kSuffix) && name.size() >= kShortest + kSuffix.size();
 }
 
-std::size_t size_of_message(std::span<const std::byte> bytes)
-{
-    return ulog::kMessageHeader + ulog::read_number<std::uint16_t>(bytes);
-}
-
 }  // namespace
 
 Definitions definitions_of(const Setup& setup)
@@ -89,7 +84,7 @@ std::size_t whole_messages(std::span<const std::byte> bytes, std::uint64_t limit
 {
     std::size_t whole = 0;
     while (bytes.size() - whole >= ulog::kMessageHeader) {
-        const std::size_t next = whole + size_of_message(bytes.subspan(whole));
+        const std::size_t next = whole + ulog::size_of_message(bytes.subspan(whole));
         if (next > bytes.size() || next > limit) {
             break;
         }
@@ -113,9 +108,14 @@ LogFiles::LogFiles(FileOptions options, Definitions definitions, std::unique_ptr
     }
 }
 
-std::size_t LogFiles::room() const noexcept { return waiting_.size() < 2 * kPiece ? kPiece : 0; }
+std::size_t LogFiles::room() const noexcept { return ready_ < 2 * kPiece ? kPiece : 0; }
 
-void LogFiles::take(std::span<const std::byte> bytes) { waiting_.insert(waiting_.end(), bytes.begin(), bytes.end()); }
+void LogFiles::take(std::span<const std::byte> bytes)
+{
+    waiting_.insert(waiting_.end(), bytes.begin(), bytes.end());
+    const std::span<std::byte> fresh = std::span(waiting_).subspan(ready_);
+    ready_ += keys_.pass(fresh.first(whole_messages(fresh, ~std::uint64_t{0})));
+}
 
 void LogFiles::fail(int error, std::int64_t now)
 {
@@ -174,7 +174,7 @@ void LogFiles::prune()
 void LogFiles::note_parameters(std::span<const std::byte> messages)
 {
     while (!messages.empty()) {
-        const std::span<const std::byte> message = messages.first(size_of_message(messages));
+        const std::span<const std::byte> message = messages.first(ulog::size_of_message(messages));
         if (static_cast<ulog::Type>(message[2]) == ulog::Type::parameter) {
             if (const auto keyed = ulog::parse_keyed(message.subspan(ulog::kMessageHeader), ulog::Type::parameter)) {
                 definitions_.parameters[keyed->name] = {message.begin(), message.end()};
@@ -188,10 +188,10 @@ void LogFiles::write_messages(std::int64_t now)
 {
     for (;;) {
         const std::uint64_t left = options_.file_bytes > size_ ? options_.file_bytes - size_ : 0;
-        std::size_t n = is_open_ ? whole_messages(waiting_, left) : 0;
+        const std::span<const std::byte> ready = std::span(waiting_).first(ready_);
+        std::size_t n = is_open_ ? whole_messages(ready, left) : 0;
         if (n == 0) {
-            const std::size_t any = whole_messages(waiting_, ~std::uint64_t{0});
-            if (any == 0) {
+            if (ready.empty()) {
                 return;
             }
             if (is_open_) {  // full
@@ -205,14 +205,15 @@ void LogFiles::write_messages(std::int64_t now)
             if (!begin_file(now)) {
                 return;
             }
-            n = std::max(whole_messages(waiting_, options_.file_bytes - std::min(size_, options_.file_bytes)),
-                         size_of_message(waiting_));  // a message at least, however small files are to be
+            n = std::max(whole_messages(ready, options_.file_bytes - std::min(size_, options_.file_bytes)),
+                         ulog::size_of_message(ready));  // a message at least, however small files are to be
         }
         std::size_t written = 0;
-        const int error = disk_->write(std::span(waiting_).first(n), written);
-        const std::size_t whole = whole_messages(std::span(waiting_).first(n), written);
-        note_parameters(std::span(waiting_).first(whole));
+        const int error = disk_->write(ready.first(n), written);
+        const std::size_t whole = whole_messages(ready.first(n), written);
+        note_parameters(ready.first(whole));
         waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(whole));
+        ready_ -= whole;
         size_ += written;
         if (error != 0) {
             fail(error, now);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "firmware/linux/flight_log/disk.hpp"
+#include "firmware/linux/flight_log/key_filter.hpp"
 #include "firmware/linux/flight_log/setup.hpp"
 
 namespace jink::flightlog {
@@ -36,8 +37,9 @@ struct Definitions {
                                                   const std::string& run, std::uint32_t number);
 
 /// The files of one run: jink_YYYYmmdd_HHMMSS_NNN.ulg, where NNN counts within the run. Takes messages in any pieces
-/// and writes whole messages. After a failure it begins a new file every kRetry with the first message that is not
-/// wholly in the file before. All methods block as long as the file system does.
+/// and writes whole messages, without signing keys; a record that is not whole at the end is left out. After a failure
+/// it begins a new file every kRetry with the first message that is not wholly in the file before. All methods block as
+/// long as the file system does.
 class LogFiles {
 public:
     static constexpr std::int64_t kRetry = 10'000'000;    ///< [us]
@@ -78,7 +80,9 @@ private:
     std::uint64_t size_ = 0;
     std::int64_t retry_at_ = 0;
     std::int64_t synced_at_ = 0;
+    KeyFilter keys_;
     std::vector<std::byte> waiting_;
+    std::size_t ready_ = 0;  ///< bytes of `waiting_` that may be written: whole messages without keys
     bool reported_ = false;
     std::atomic<std::uint32_t> failures_{0}, begun_{0};
     std::atomic<int> news_{0};

@@ -22,7 +22,6 @@ const char* name_of(Entry kind)
     case Entry::areas: return "closed areas";
     case Entry::stored: return "stored parameters";
     case Entry::shut_down: return "the end";
-    case Entry::key_removed: return "a removed key";
     }
     return "an unknown entry";
 }
@@ -71,10 +70,7 @@ bool Tape::take(Entry kind, Port port) noexcept
     if (!difference_.empty()) {
         return false;
     }
-    while (reader_.kind() == Entry::key_removed) {
-        lost_key_ = true;
-        reader_.pass();
-    }
+    lost_key_ = lost_key_ || reader_.lost_key();
     if (reader_.kind() != kind || reader_.port() != port) {
         differ(std::string(name_of(kind)) + " on " + name_of(port) + ", the log has " + name_of(reader_.kind()) +
                (reader_.empty() ? "" : std::string(" on ") + name_of(reader_.port())));
@@ -103,10 +99,6 @@ bool Tape::take_health(Port port) noexcept
 
 void Tape::finish()
 {
-    while (reader_.kind() == Entry::key_removed) {
-        lost_key_ = true;
-        reader_.pass();
-    }
     if (!reader_.empty()) {
         differ(std::string("no further call, the log has ") + name_of(reader_.kind()) + " on " +
                name_of(reader_.port()));
@@ -128,6 +120,7 @@ std::size_t PlayingSerialPort::read(std::span<std::byte> into) noexcept
         return 0;
     }
     std::copy(bytes.begin(), bytes.end(), into.begin());
+    count_read(health_, bytes.size());
     return bytes.size();
 }
 
@@ -148,6 +141,7 @@ std::size_t PlayingSerialPort::write(std::span<const std::byte> from) noexcept
         return 0;
     }
     tape_.compared(from.size());
+    count_write(health_, from.size(), static_cast<std::size_t>(accepted));
     return static_cast<std::size_t>(accepted);
 }
 
@@ -156,7 +150,7 @@ hal::PortHealth PlayingSerialPort::health() const noexcept
     if (tape_.take_health(which_)) {
         tape_.reader().health(health_);
     }
-    return to_port_health(health_);
+    return health_;
 }
 
 bool PlayingCanPort::receive(hal::CanFrame& frame) noexcept
@@ -169,6 +163,7 @@ bool PlayingCanPort::receive(hal::CanFrame& frame) noexcept
         return false;
     }
     frame = tape_.reader().frame();
+    count_received(health_);
     return true;
 }
 
@@ -188,6 +183,7 @@ bool PlayingCanPort::send(const hal::CanFrame& frame) noexcept
         return false;
     }
     tape_.compared(frame.length);
+    count_sent(health_, accepted);
     return accepted;
 }
 
@@ -196,7 +192,7 @@ hal::CanHealth PlayingCanPort::health() const noexcept
     if (tape_.take_health(Port::can)) {
         tape_.reader().health(health_);
     }
-    return to_can_health(health_);
+    return health_;
 }
 
 }  // namespace jink::flightlog

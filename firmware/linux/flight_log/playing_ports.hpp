@@ -51,7 +51,7 @@ public:
 private:
     Tape& tape_;
     Port which_;
-    mutable Health health_{};
+    mutable hal::PortHealth health_;
 };
 
 class PlayingCanPort final : public hal::CanPort {
@@ -64,7 +64,7 @@ public:
 
 private:
     Tape& tape_;
-    mutable Health health_{};
+    mutable hal::CanHealth health_;
 };
 
 }  // namespace jink::flightlog

@@ -5,11 +5,9 @@
 #include <array>
 #include <cstring>
 
-#include "firmware/linux/flight_log/ulog.hpp"
-
 namespace jink::flightlog {
 
-void Queue::copy_in(std::uint64_t at, std::span<const std::byte> bytes) noexcept
+inline void Queue::copy_in(std::uint64_t at, std::span<const std::byte> bytes) noexcept
 {
     const auto from = static_cast<std::size_t>(at & (bytes_.size() - 1));
     const std::size_t first = std::min(bytes.size(), bytes_.size() - from);
@@ -26,24 +24,26 @@ void Queue::lose(std::int64_t now_us, std::uint32_t count) noexcept
     is_dropping_ = true;
 }
 
+/// Puts the dropout message. @return behind it
+std::uint64_t Queue::end_dropping(std::uint64_t at, std::int64_t now_us) noexcept
+{
+    std::array<std::byte, kDropout> buffer{};
+    const auto ms = std::clamp<std::int64_t>((now_us - dropping_since_) / 1000, 0, 65535);
+    copy_in(at, ulog::Composer(buffer).begin(ulog::Type::dropout).put(static_cast<std::uint16_t>(ms)).end());
+    is_dropping_ = false;
+    return at + kDropout;
+}
+
 bool Queue::add(std::span<const std::byte> messages, std::int64_t now_us, std::uint32_t count) noexcept
 {
-    constexpr std::size_t kDropout = ulog::kMessageHeader + 2;
     const std::uint64_t head = head_.load(std::memory_order_relaxed);
     const auto used = static_cast<std::size_t>(head - tail_.load(std::memory_order_acquire));
     const std::size_t wanted = messages.size() + (is_dropping_ ? kDropout : 0U);
-    if (wanted > bytes_.size() - used) {
+    if (wanted > bytes_.size() - used) [[unlikely]] {
         lose(now_us, count);
         return false;
     }
-    std::uint64_t at = head;
-    if (is_dropping_) {
-        std::array<std::byte, kDropout> buffer{};
-        const auto ms = std::clamp<std::int64_t>((now_us - dropping_since_) / 1000, 0, 65535);
-        copy_in(at, ulog::Composer(buffer).begin(ulog::Type::dropout).put(static_cast<std::uint16_t>(ms)).end());
-        at += kDropout;
-        is_dropping_ = false;
-    }
+    const std::uint64_t at = is_dropping_ ? end_dropping(head, now_us) : head;
     copy_in(at, messages);
     head_.store(at + messages.size(), std::memory_order_release);
     messages_ += count;

@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "firmware/flight_log/ulog.hpp"
+
 namespace jink::flightlog {
 
 /// Queue of whole messages from one writer, the control loop, to one reader, the thread that writes files. Neither side
@@ -34,6 +36,9 @@ public:
 
 private:
     void copy_in(std::uint64_t at, std::span<const std::byte> bytes) noexcept;
+    [[gnu::noinline]] std::uint64_t end_dropping(std::uint64_t at, std::int64_t now_us) noexcept;
+
+    static constexpr std::size_t kDropout = ulog::kMessageHeader + 2;  ///< size of a dropout message
 
     std::vector<std::byte> bytes_;
     alignas(64) std::atomic<std::uint64_t> head_{0};  ///< the writer's

@@ -17,7 +17,8 @@ inline constexpr std::array<std::uint16_t, 9> kHalSizes{32, 64, 128, 192, 256, 3
 /// Head of such a message: timestamp, sequence of parts since the start, bytes in use, and flags.
 struct HalHead {
     static constexpr std::size_t kBytes = 16;
-    static constexpr std::uint16_t kGoesOn = 1;  ///< the record goes on in the next part
+    static constexpr std::uint16_t kGoesOn = 1;     ///< the record goes on in the next part
+    static constexpr std::uint16_t kContinues = 2;  ///< the record began in a part before
     std::uint64_t timestamp = 0;
     std::uint32_t sequence = 0;
     std::uint16_t length = 0;

@@ -131,4 +131,10 @@ template <class T>
     return value;
 }
 
+/// With its header. @param message  the header at least
+[[nodiscard]] inline std::size_t size_of_message(std::span<const std::byte> message) noexcept
+{
+    return kMessageHeader + read_number<std::uint16_t>(message);
+}
+
 }  // namespace jink::ulog

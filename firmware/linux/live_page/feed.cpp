@@ -26,15 +26,26 @@ bool is_shown(std::span<const std::byte> message) noexcept
 bool Feed::add(std::span<const std::byte> messages, std::uint32_t /*count*/) noexcept
 {
     bool all = true;
-    while (messages.size() >= ulog::kDataHeader) {
-        const std::size_t content = static_cast<unsigned>(messages[0]) | static_cast<unsigned>(messages[1]) << 8U;
-        const std::size_t size = std::min(ulog::kMessageHeader + content, messages.size());
-        const std::span<const std::byte> message = messages.first(size);
-        if (is_shown(message)) {
-            all = queue_.add(message, 0, 1) && all;
+    std::size_t shown = 0;  // bytes of the messages that are shown, before `at`
+    std::uint32_t shown_count = 0;
+    std::size_t at = 0;
+    const auto copy = [&] {
+        all = (shown == 0 || queue_.add(messages.subspan(at - shown, shown), 0, shown_count)) && all;
+        shown = 0;
+        shown_count = 0;
+    };
+    while (messages.size() - at >= ulog::kDataHeader) {
+        const std::size_t content = static_cast<unsigned>(messages[at]) | static_cast<unsigned>(messages[at + 1]) << 8U;
+        const std::size_t size = std::min(ulog::kMessageHeader + content, messages.size() - at);
+        if (is_shown(messages.subspan(at, size))) {
+            shown += size;
+            ++shown_count;
+        } else {
+            copy();
         }
-        messages = messages.subspan(size);
+        at += size;
     }
+    copy();
     return all;
 }
 

@@ -16,7 +16,7 @@ public:
     /// @param queue_bytes  a power of two
     explicit Feed(std::size_t queue_bytes) : queue_(queue_bytes) {}
 
-    /// The control loop's. O(bytes).
+    /// The control loop's. Messages that follow each other are kept or dropped together. O(bytes).
     bool add(std::span<const std::byte> messages, std::uint32_t count) noexcept override;
     void lose() noexcept override {}
     [[nodiscard]] flightlog::LogCounts counts() const noexcept override
