@@ -64,6 +64,20 @@ TEST(EncounterKinds, ChangeOneThingEach)
     EXPECT_EQ(encounter_of(EncounterKind::windy, 3).wind.at_20_ft, 8.0);
 }
 
+TEST(EncounterKinds, LateOnesAreReportedShortlyBeforeTheyMeet)
+{
+    for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+        const Scenario s = encounter_of(EncounterKind::late, seed);
+        ASSERT_EQ(s.threats.size(), 1U);
+        const Threat& only = s.threats[0];
+        const auto distance = [&](double t) {
+            return (only.position_at(t) - s.start_position - s.start_velocity * t).norm();
+        };
+        EXPECT_LT(distance(only.appears_at + 0.4), distance(only.appears_at + 0.38)) << seed << ": still coming";
+        EXPECT_GT(distance(only.appears_at + 1.62), distance(only.appears_at + 1.6)) << seed << ": has passed";
+    }
+}
+
 /// Of errors that stay: their size, and how much of one is left after the correlation time.
 TEST(EncounterKinds, DriftIsAsLargeAndAsSlowAsItsModel)
 {

@@ -113,6 +113,7 @@ std::string_view to_string(EncounterKind kind) noexcept
     case EncounterKind::drifting: return "drifting";
     case EncounterKind::windy: return "windy";
     case EncounterKind::cluttered: return "cluttered";
+    case EncounterKind::late: return "late";
     case EncounterKind::open: break;
     }
     return "open";
@@ -147,6 +148,10 @@ Scenario encounter_of(EncounterKind kind, std::uint64_t seed)
         break;
     case EncounterKind::windy: s.wind.at_20_ft = 8.0; break;
     case EncounterKind::cluttered: add_pillars(random, s); break;
+    case EncounterKind::late:
+        s.threats.resize(1);
+        s.threats[0].appears_at = meeting_time(s, s.threats[0]) - uniform(random, 0.4, 1.6);
+        break;
     case EncounterKind::open: break;
     }
     return s;

@@ -19,10 +19,11 @@ enum class EncounterKind : std::uint8_t {
     drifting,   ///< errors of positions that stay: 1.5 m of traffic (20 s), 1 m of the own position (60 s)
     windy,      ///< gusts of a wind of 8 m/s
     cluttered,  ///< 12 pillars of up to 1.5 m about the leg, seen by a level scan
+    late,       ///< the first intruder alone, reported 0.4 to 1.6 s before they meet
 };
-inline constexpr std::array kEncounterKinds{EncounterKind::open,     EncounterKind::turning,  EncounterKind::climbing,
-                                            EncounterKind::speeding, EncounterKind::seldom,   EncounterKind::drifting,
-                                            EncounterKind::windy,    EncounterKind::cluttered};
+inline constexpr std::array kEncounterKinds{EncounterKind::open,     EncounterKind::turning,   EncounterKind::climbing,
+                                            EncounterKind::speeding, EncounterKind::seldom,    EncounterKind::drifting,
+                                            EncounterKind::windy,    EncounterKind::cluttered, EncounterKind::late};
 [[nodiscard]] std::string_view to_string(EncounterKind kind) noexcept;
 
 /// The same seed gives the same encounter. Intruders that do not fly straight on pass the place where the straight ones
