@@ -43,7 +43,8 @@ float slant(float limit, const vehicle::VehicleLimits& limits) noexcept
 /// Search for the command of greatest margin: the check of each ends once it is no better than the best so far.
 class MaxClearance {
 public:
-    MaxClearance(const world::Situation& s, const Settings& settings, Seconds horizon, WorkBudget& budget) noexcept
+    [[gnu::noinline]] MaxClearance(const world::Situation& s, const Settings& settings, Seconds horizon,
+                                   WorkBudget& budget) noexcept
         : s_(s), corner_(s.limits.half_extents.minCoeff()), inner_limits_(vehicle::widened(s.limits, -corner_)),
           inner_(world::with_limits(s, inner_limits_)), budget_(budget), horizon_(horizon),
           step_(std::max(settings.prediction_step, horizon / static_cast<float>(kMaxPathPoints - 2)))
