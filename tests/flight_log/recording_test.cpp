@@ -43,6 +43,17 @@ void change_one(H& health, std::mt19937_64& random)
     }
 }
 
+void expect_no_health(std::span<const std::byte> record)
+{
+    EntryReader reader(record);
+    while (!reader.empty()) {
+        const Entry kind = reader.kind();
+        ASSERT_NE(kind, Entry::health);
+        reader.pass();
+        ASSERT_TRUE(reader.pass_content(kind));
+    }
+}
+
 /// Counters that follow the calls, and others that change by any number at any time.
 TEST(RecordedHealth, IsPlayedAsItWas)
 {
@@ -129,13 +140,7 @@ TEST(RecordedHealth, IsLeftOutWhereItFollowsFromTheCalls)
         static_cast<void>(recording_line.health());
         static_cast<void>(recording_can.health());
     }
-    EntryReader reader(recorder.end().record());
-    while (!reader.empty()) {
-        const Entry kind = reader.kind();
-        ASSERT_NE(kind, Entry::health);
-        reader.pass();
-        ASSERT_TRUE(reader.pass_content(kind));
-    }
+    expect_no_health(recorder.end().record());
 }
 
 /// The ports of jinkd read their devices before the step: what waits was not read yet, whenever health is asked for.
@@ -168,13 +173,7 @@ TEST(RecordedHealth, IsLeftOutBehindPortsThatReadAhead)
         EXPECT_EQ(recording_line.health().bytes_in, read);
         EXPECT_EQ(recording_can.health().frames_in, 3 * (i + 1));
     }
-    EntryReader reader(recorder.end().record());
-    while (!reader.empty()) {
-        const Entry kind = reader.kind();
-        ASSERT_NE(kind, Entry::health);
-        reader.pass();
-        ASSERT_TRUE(reader.pass_content(kind));
-    }
+    expect_no_health(recorder.end().record());
 }
 
 /// Bits of counters that do not exist, and kinds that do not: the record is damaged.
