@@ -66,6 +66,10 @@ TEST(EncounterResult, TheShortTrialsCountAsTheLongOnes)
         if (all.avoidable) {
             EXPECT_EQ(brief.best, all.best);
         }
+        const Verdict first = judge(s, 12.0, Trials::until_kept);
+        EXPECT_EQ(first.avoidable, all.avoidable);
+        EXPECT_EQ(first.keep, all.avoidable ? 1U : 0U);
+        EXPECT_EQ(first.conflict, all.conflict);
     }
 }
 

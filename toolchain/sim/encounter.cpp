@@ -48,7 +48,7 @@ void each_column(Result& r, Visit&& visit)
     visit("escapes", r.escapes);
     visit("faults", r.faults);
     visit("conflict", r.conflict);
-    visit("keep", r.keep);
+    visit("avoidable", r.avoidable);
     visit("reported_too_late", r.reported_too_late);
     visit("failed_avoidable", r.failed_avoidable);
     visit("last_keep", r.last_keep);
@@ -159,7 +159,7 @@ Scenario encounter_scenario(std::uint64_t seed, const Variant& variant)
 
 EncounterResult result_of(const Scenario& scenario, Record flown)
 {
-    const ReportedFlight flight = report_on(scenario, std::move(flown), true, Trials::until_broken);
+    const ReportedFlight flight = report_on(scenario, std::move(flown), true, Trials::until_kept);
     const Record& record = flight.record;
     EncounterResult r;
     r.seed = scenario.seed;
@@ -180,7 +180,7 @@ EncounterResult result_of(const Scenario& scenario, Record flown)
     r.to_answer = record.inside ? record.inside->to_answer : StepsToAnswer{};
     r.faults = static_cast<unsigned>(record.faults.size());
     r.conflict = flight.verdict.conflict;
-    r.keep = flight.verdict.keep;
+    r.avoidable = flight.verdict.avoidable;
     r.reported_too_late = flight.reported_too_late;
     r.failed_avoidable = flight.failed_avoidable;
     r.last_keep = flight.last_chance.keep;

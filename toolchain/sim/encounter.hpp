@@ -27,14 +27,13 @@ struct EncounterResult {
     double alone = 0.0;       ///< least separation of the same mission without a co-processor [m]
     double duration = 0.0;    ///< of the flight [s]
     unsigned takeovers = 0;
-    SideCounts sides;         ///< as flown
-    SideCounts chosen_sides;  ///< as chosen
-    unsigned brakes = 0;      ///< supervisor fallbacks: brake
-    unsigned escapes = 0;     ///< supervisor fallbacks: max-clearance escape
-    unsigned faults = 0;      ///< broken rules of the protocol or of the airspace
-    bool conflict = false;    ///< the mission, if continued, breaks the promise towards a reported threat
-    unsigned keep = 0;        ///< judge's manoeuvres that keep the promise from the detection of `conflict` on; 0:
-                              ///< none, or no conflict
+    SideCounts sides;                ///< as flown
+    SideCounts chosen_sides;         ///< as chosen
+    unsigned brakes = 0;             ///< supervisor fallbacks: brake
+    unsigned escapes = 0;            ///< supervisor fallbacks: max-clearance escape
+    unsigned faults = 0;             ///< broken rules of the protocol or of the airspace
+    bool conflict = false;           ///< the mission, if continued, breaks the promise towards a reported threat
+    bool avoidable = false;          ///< a judge's manoeuvre keeps the promise from the detection of `conflict` on
     bool reported_too_late = false;  ///< the promise was broken, and worst, before the threat was detected (report.hpp)
     bool failed_avoidable = false;   ///< the promise was broken, and a judge's manoeuvre would have kept it
     unsigned last_keep = 0;          ///< number that keep it from the first sighting or the first conflict on
@@ -65,7 +64,7 @@ struct Variant {
 /// Empty when all are accepted. O(n^2) for n parameters.
 [[nodiscard]] std::string refusal_of(const Variant& variant);
 
-/// Flies open_encounter(seed) in process and judges it (Trials::until_broken). An avoidable failure is flown again
+/// Flies open_encounter(seed) in process and judges it (Trials::until_kept). An avoidable failure is flown again
 /// without sensor noise, with the same delays and losses. If the promise is then kept, noise caused the failure.
 [[nodiscard]] EncounterResult fly_encounter(std::uint64_t seed, const Variant& variant);
 

@@ -101,7 +101,7 @@ void put_promises(std::string& text, const Results& results)
     const std::size_t conflicts = count_if(results, [](const EncounterResult& r) { return r.conflict; });
     put_share(text, "mission in conflict, once somebody had been told", conflicts, all);
     put_share(text, "... avoidable at that instant",
-              count_if(results, [](const EncounterResult& r) { return r.conflict && r.keep > 0; }), conflicts);
+              count_if(results, [](const EncounterResult& r) { return r.conflict && r.avoidable; }), conflicts);
     put_share(text, "without a co-processor the promise would be broken",
               count_if(results, [](const EncounterResult& r) { return r.alone < 0.7; }), all);
 }
@@ -221,9 +221,8 @@ void put_list(std::string& text, const char* title, const Results& results)
     for (const EncounterResult& r : results) {
         line(text, "  %20llu %9u %-10s %10.3f %8.2f %8.2f %6u %6u %6.2f %6u %6u %5u  %s",
              static_cast<unsigned long long>(r.seed), r.intruders, std::string(to_string(r.outcome)).c_str(),
-             r.separation, r.at, r.reported, broke_promise(r) ? r.last_keep : r.keep,
-             broke_promise(r) ? r.late_keep : r.keep, r.noiseless, r.sides.same_picture, r.sides.changed_picture,
-             r.takeovers, verdict_of(r));
+             r.separation, r.at, r.reported, r.last_keep, r.late_keep, r.noiseless, r.sides.same_picture,
+             r.sides.changed_picture, r.takeovers, verdict_of(r));
     }
 }
 

@@ -105,12 +105,15 @@ Vec direction(int i)
 
 Verdict judge_from(const Scenario& scenario, const Truth& start, double at, double horizon, Trials trials)
 {
-    const double enough = trials == Trials::until_broken ? scenario.promise : kNeverEnough;
+    const double enough = trials == Trials::to_the_end ? kNeverEnough : scenario.promise;
     Verdict verdict;
     verdict.conflict = true;
     verdict.detected = at;
     verdict.best = -1e9;
     const auto attempt = [&](const Vec& command) {
+        if (trials == Trials::until_kept && verdict.keep > 0) {
+            return;
+        }
         const double least = least_separation(
             scenario, start, at, horizon, enough, [&](const Vec&) { return command; },
             [](std::size_t) { return true; });

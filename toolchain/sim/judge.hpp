@@ -17,11 +17,12 @@ struct Verdict {
     Vec best_command = Vec::Zero();
 };
 
-/// How far the manoeuvres are flown. `avoidable` and `keep` are the same for both.
+/// How far the manoeuvres are flown. `avoidable` is the same for all.
 enum class Trials : std::uint8_t {
     to_the_end,    ///< all to the horizon: `best` is always exact
     until_broken,  ///< each until it breaks the promise, a third of the work: `best` covers only manoeuvres that keep
                    ///< the promise
+    until_kept,    ///< the same, and none after the first that keeps the promise: `keep` is 0 or 1
 };
 
 /// Judges a scenario with perfect knowledge and without core's code. Flies the mission alone to the instant of

@@ -27,7 +27,7 @@ bool is_avoidable(const Scenario& scenario, const Record& record)
     truth.velocity = sample->velocity;
     truth.acceleration = sample->acceleration;
     const double horizon = record.closest.time - reported + kBeyond;
-    return judge_from(scenario, truth, sample->time, horizon, Trials::until_broken).avoidable;
+    return judge_from(scenario, truth, sample->time, horizon, Trials::until_kept).avoidable;
 }
 
 bool is_worse_than_critical(const Text& text) { return text.severity <= kCriticalSeverity; }

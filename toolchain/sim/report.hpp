@@ -33,6 +33,7 @@ struct ReportedFlight {
 };
 
 /// Adds the results that follow a flight: unmet expectations, the flight alone and, if `with_judge`, the verdict.
+/// @param trials  of `verdict`; the last chances always count all manoeuvres that keep the promise
 [[nodiscard]] ReportedFlight report_on(const Scenario& scenario, Record record, bool with_judge,
                                        Trials trials = Trials::to_the_end);
 
