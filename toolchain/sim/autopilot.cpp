@@ -88,8 +88,10 @@ void Autopilot::enter(Mode mode, bool asked)
     if (mode == Mode::external) {
         ++takeovers_;
         last_followed_ = world_.now();
-        // GUIDED starts by holding its place; OFFBOARD continues with the received set-points.
+        // GUIDED starts by holding its place. OFFBOARD flies no set-point from before it (MavlinkReceiver publishes
+        // them in OFFBOARD alone): the former mode's last one stands until the next.
         has_external_setpoint_ = scenario_.stack == Stack::px4;
+        setpoint_ = has_external_setpoint_ ? command_ : Vec(Vec::Zero());
     }
     if (mode == Mode::mission && items_) {
         items_->resume(world_.own());

@@ -60,10 +60,10 @@ struct Heard {
 /// The autopilot's end of the link: models ArduPilot Copter or PX4 as seen by a companion, flying the vehicle of a
 /// World.
 ///
-/// Modes, set-point time-outs and refusals follow the stacks' own rules (docs/guides/take_over.md). ArduPilot takes
-/// velocities in GUIDED only and stops 3 s after the last set-point. PX4 enters OFFBOARD only after more than a second
-/// of set-points at 2 Hz or more, as documented (releases up to v1.14 and v1.16 grant OFFBOARD earlier), and changes to
-/// AUTO.LOITER 1 s after the last set-point. A vehicle with a min_speed is ArduPlane (arduplane.hpp).
+/// Modes, set-point time-outs and refusals follow the stacks' own rules (docs/guides/take_over.md). Both fly
+/// velocities that come in their external mode alone. ArduPilot stops 3 s after the last one. PX4 enters OFFBOARD if one
+/// came within half a second (its documentation wants a second of them: Faults::offboard_proof), and changes to
+/// AUTO.LOITER 1 s after the last one. A vehicle with a min_speed is ArduPlane (arduplane.hpp).
 class Autopilot {
 public:
     /// @param world  outlives the autopilot

@@ -109,11 +109,9 @@ void Autopilot::hear_setpoint(const SetPositionTargetLocalNed& target)
     if (mode_ == Mode::external) {
         last_followed_ = world_.now();
         has_external_setpoint_ = true;
+        setpoint_ = velocity;
     } else if (mode_ != Mode::mission && !last_change_was_asked_ && world_.now() - mode_since_ > kGrace) {
         ++heard_.setpoints_overruled;
-    }
-    if (mode_ == Mode::external || scenario_.stack == Stack::px4) {
-        setpoint_ = velocity;
     }
 }
 
