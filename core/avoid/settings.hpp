@@ -89,6 +89,7 @@ struct WorkPerUpdate {
     return work.slice >= WorkPerUpdate::kMinSlice && work.all >= WorkPerUpdate::kMinMandatory &&
            work.all - WorkPerUpdate::kMinMandatory >= work.slice;
 }
+static_assert(is_valid(WorkPerUpdate{}));
 
 /// Of the supervisor alone; what it shares with the methods is in world::FlightRules.
 struct Settings {

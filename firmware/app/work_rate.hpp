@@ -21,8 +21,8 @@ public:
     static constexpr std::uint64_t kSharePercent = 80;  ///< the rest: interrupts, and what the assumption misses
     static constexpr std::uint64_t kMandatoryPercent = 50;
     static constexpr std::uint64_t kInstructionsPerUnit = 170;  ///< at most (WorkBudget)
-    static constexpr std::uint64_t kUncounted =
-        130'000;  ///< link, tables, the flight of the tick: twice the most found
+    /// Link, tables, the flight of the tick: twice the most found without a log (docs/guides/board_log.md).
+    static constexpr std::uint64_t kUncounted = 130'000;
 
     /// `clock` [Hz].
     explicit constexpr WorkRate(std::uint32_t clock) noexcept

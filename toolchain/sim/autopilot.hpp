@@ -61,8 +61,8 @@ struct Heard {
 /// World.
 ///
 /// Modes, set-point time-outs and refusals follow the stacks' own rules (docs/guides/take_over.md). Both fly
-/// velocities that come in their external mode alone. ArduPilot stops 3 s after the last one. PX4 enters OFFBOARD if one
-/// came within half a second (its documentation wants a second of them: Faults::offboard_proof), and changes to
+/// velocities that come in their external mode alone. ArduPilot stops 3 s after the last one. PX4 enters OFFBOARD if
+/// one came within half a second (its documentation wants a second of them: Faults::offboard_proof), and changes to
 /// AUTO.LOITER 1 s after the last one. A vehicle with a min_speed is ArduPlane (arduplane.hpp).
 class Autopilot {
 public:
