@@ -80,21 +80,18 @@ Seconds AutopilotControl::setpoint_period(const Configuration& c) const noexcept
     return takeover_.proving() ? kProvingPeriod : 0.0F;
 }
 
-/// Neither autopilot flies a set-point from before its external mode, and the HEARTBEAT that shows the mode may come a
-/// second after it: what is wanted is said from the request on, and at once when the request is granted.
-void AutopilotControl::send_setpoint(const ControlInput& input, const Configuration& c, TakeoverEvent event,
+/// Neither autopilot flies a set-point from before its external mode: what is wanted is said at once when it begins.
+void AutopilotControl::send_setpoint(const ControlInput& input, const Configuration& c, bool followed,
                                      StepReport& report) noexcept
 {
     const Seconds period = setpoint_period(c);
     const Vec3& own = input.own.velocity;
-    const bool asks = takeover_.control() == Control::requesting && report.guidance.wants_control;
-    const bool granted = event == TakeoverEvent::took_over || (asks && input.autopilot.has_accepted_mode());
-    // Before, the stream says what the vehicle does anyway.
-    const bool leads = takeover_.in_control() || asks;
+    // Until the autopilot follows us, the stream says what it does anyway.
+    const bool leads = takeover_.follows() && (followed || report.guidance.wants_control);
     const Vec3 wanted = leads ? report.guidance.velocity : own;
     const Vec3 velocity = input.autopilot.report().fixed_wing ? wing_course(wanted, own, last_velocity_) : wanted;
     // What is decided anew does not wait for its turn: a tenth of a second is half a metre at cruise speed.
-    const bool anew = leads && (granted || (velocity - last_velocity_).squaredNorm() > kNewCommand * kNewCommand);
+    const bool anew = leads && (!followed || (velocity - last_velocity_).squaredNorm() > kNewCommand * kNewCommand);
     if (period <= 0.0F || (!anew && input.now - last_setpoint_ < period - 0.5F * kTick)) {
         return;
     }
@@ -190,6 +187,7 @@ TakeoverEvent AutopilotControl::update(const ControlInput& input, const Configur
         counts_.setpoints_withheld += setpoint_period(c) > 0.0F ? 1U : 0U;
         report.faults = static_cast<std::uint16_t>(report.faults | bit(Fault::not_finite));
     }
+    const bool followed = takeover_.follows();
     const TakeoverInput takeover = takeover_input(input, c, report);
     note_block(input.autopilot, report.guidance, outbox);
     const TakeoverOutput output = takeover_.update(takeover, input.now);
@@ -198,7 +196,7 @@ TakeoverEvent AutopilotControl::update(const ControlInput& input, const Configur
     const bool as_asked = way_blocked_ && output.event == TakeoverEvent::overruled &&
                           input.autopilot.report().mode == link::FlightMode::hold;
     announce(as_asked ? TakeoverEvent::none : output.event, outbox);
-    send_setpoint(input, c, output.event, report);
+    send_setpoint(input, c, followed, report);
     drop_stale(c, input.now);
     report.control = takeover_.control();
     return output.event;

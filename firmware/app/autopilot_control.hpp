@@ -58,8 +58,7 @@ private:
     void note_block(const AutopilotState& autopilot, const avoid::Guidance& guidance, Outbox& outbox) noexcept;
     void request(const TakeoverOutput& output, TimePoint now) noexcept;
     [[nodiscard]] Seconds setpoint_period(const Configuration& c) const noexcept;
-    void send_setpoint(const ControlInput& input, const Configuration& c, TakeoverEvent event,
-                       StepReport& report) noexcept;
+    void send_setpoint(const ControlInput& input, const Configuration& c, bool followed, StepReport& report) noexcept;
     void drop_stale(const Configuration& c, TimePoint now) noexcept;
 
     link::Link& link_;

@@ -143,7 +143,7 @@ avoid::Guidance Coprocessor::decide(TimePoint now, const vehicle::VehicleState& 
                              own_.measured(),
                              own,
                              autopilot_.flown_leg(takeover.streaming()),
-                             takeover.in_control(),
+                             takeover.follows(),
                              {tracks, picture_.obstacles(), air},
                              link_.own_track()},
                             c);

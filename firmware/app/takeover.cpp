@@ -148,6 +148,7 @@ TakeoverOutput Takeover::ask(const TakeoverInput& input, TimePoint now) noexcept
         return {};
     }
     request_.denied = control_ == Control::requesting && (request_.denied || input.mode_denied);
+    request_.granted = !request_.denied && (request_.granted || input.mode_accepted);
     const bool unproven = input.report.stack == link::AutopilotStack::px4 && now - stream_.since < kProof;
     const bool again = request_.denied && waited >= (unproven ? kAskAgain : kAnnounce);
     if (control_ == Control::requesting && waited < kConfirm && !again) {
@@ -166,7 +167,7 @@ TakeoverOutput Takeover::ask(const TakeoverInput& input, TimePoint now) noexcept
     if (clear) {
         request_.tries += unproven ? 0 : 1;
         ++diagnostics_.requests;
-        request_.denied = false;
+        request_.denied = request_.granted = false;
         control_ = Control::requesting;
         claim_.kind = Claim::asked;
         claim_.is_seen = false;

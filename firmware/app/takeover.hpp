@@ -93,9 +93,9 @@ struct TakeoverDiagnostics {
 };
 
 /// Taking over and giving back as autopilots want it: stream first, ask for the external mode, wait for the HEARTBEAT
-/// that shows it (1 s, two more tries), fly, ask for the former mode, stream until that is confirmed. Any other mode
-/// seen is the pilot's: stop at once. A mode asked for stays ours to fly or to give back when a fault of ours silences
-/// us meanwhile: as soon as acting is allowed again and the HEARTBEAT shows it.
+/// that shows it (1 s, two more tries), flown from the accepted answer on, fly, ask for the former mode, stream until
+/// that is confirmed. Any other mode seen is the pilot's: stop at once. A mode asked for stays ours to fly or to give
+/// back when a fault of ours silences us meanwhile: as soon as acting is allowed again and the HEARTBEAT shows it.
 ///
 /// PX4 documents (up to v1.16) that it grants OFFBOARD only after more than a second of set-points; its sources since
 /// v1.14 ask for recent ones alone. So it is asked early, and while it refuses and the stream is younger than that,
@@ -145,6 +145,12 @@ public:
     [[nodiscard]] bool in_control() const noexcept
     {
         return control_ == Control::ours || control_ == Control::returning;
+    }
+    /// The autopilot flies our set-points: in control, or the external mode was granted and no HEARTBEAT has come
+    /// since, which a PX4 sends once a second.
+    [[nodiscard]] bool follows() const noexcept
+    {
+        return in_control() || (control_ == Control::requesting && request_.granted);
     }
     /// The newest HEARTBEAT showed the external mode and is fresh enough to ask for another one.
     [[nodiscard]] bool may_ask_to_hold(TimePoint now) const noexcept
@@ -199,6 +205,7 @@ private:
         TimePoint asked;
         int tries = 0;  ///< in this conflict; once refused, of the hold mode
         bool denied = false;
+        bool granted = false;
     };
     struct ClaimState {
         Claim kind = Claim::none;
