@@ -41,7 +41,7 @@ avoid::Guidance Decision::update(const DecisionInput& input, const Configuration
     static_cast<void>(threats_.collect(situation, input.around));
     situation.threats = threats_.all();
     const avoid::Guidance guidance = supervisor_.update(situation, input.in_control, nominal_.other());
-    nominal_.note(guidance.conflict.has_value(), guidance.on_other, guidance.other_conflict);
+    nominal_.note(guidance.conflict.has_value(), guidance.on_other);
     return guidance;
 }
 

@@ -65,12 +65,12 @@ void NominalPaths::update(const vehicle::VehicleState& measured, const vehicle::
     on_motion_ = in_control ? on_motion_ || !leg_.is_known() : !believes_leg();
 }
 
-void NominalPaths::note(bool has_conflict, bool on_other, bool other_conflict) noexcept
+void NominalPaths::note(bool has_conflict, bool on_other) noexcept
 {
     if (!in_control_) {
         was_on_motion_ = has_conflict ? on_other : was_on_motion_;
-    } else if (other_conflict && on_motion_ && believes_leg()) {
-        on_motion_ = false;  // the motion's own conflict is over: now the leg's is to be solved
+    } else if (!has_conflict && on_motion_ && believes_leg()) {
+        on_motion_ = false;  // the motion's own conflict is over, and the autopilot is going to fly the leg
     }
 }
 

@@ -15,9 +15,10 @@ namespace jink::app {
 /// corner too, and the measured motion where it would be at the one that it has. Every target has the same paths to the
 /// bit.
 ///
-/// From a take-over on the measured motion as it was then is kept: control is given back along the path that the
-/// conflict was on. Of motion slower than MotionEstimate::kMoving and half the cruise speed the place alone is kept.
-/// 1 KiB. O(samples) per update.
+/// From a take-over on the measured motion as it was then is kept while it is in conflict, and where no leg is
+/// believed. Then the leg counts: the autopilot is going to fly there, and the motion goes on past the leg's end. Of
+/// motion slower than MotionEstimate::kMoving and half the cruise speed the place alone is kept. 1 KiB. O(samples) per
+/// update.
 class NominalPaths {
 public:
     NominalPaths() = default;
@@ -30,9 +31,8 @@ public:
     /// @param in_control  the vehicle follows our commands: its motion says nothing of where the autopilot goes
     void update(const vehicle::VehicleState& measured, const vehicle::VehicleState& own, const world::Leg* leg,
                 const vehicle::VehicleLimits& limits, bool in_control) noexcept;
-    /// What the supervisor made of them: which one the conflict was on, and whether the other one is in the way of
-    /// giving back control.
-    void note(bool has_conflict, bool on_other, bool other_conflict) noexcept;
+    /// What the supervisor made of them: whether there is a conflict, and whether it is on the other path.
+    void note(bool has_conflict, bool on_other) noexcept;
     /// The frame jumped, or own state comes from elsewhere.
     void reset() noexcept;
 

@@ -68,9 +68,10 @@
 //   scan is all points with one time stamp and sensor_type, and ends with the next scan or a pause of 0.05 s.
 // * Leg: the flight to the mission's current item; endpoint_mission.cpp. Reported while armed and in the mission mode
 //   and in an external mode that follows the mission mode directly (ours); lost in any other mode.
-//   Start: the own position when the item, its place or the mode changes, or on arming: ArduCopter flies from its own
-//   position when an item starts or AUTO resumes. Or the end of the former leg, if MISSION_ITEM_REACHED reports that it
-//   was reached, within 15 m (PX4's acceptance radius is 10 m): both stacks then fly along the line between the items.
+//   Start: the own position when the item, its place or the mode changes, or on arming, in that external mode too:
+//   ArduCopter flies from its own position when an item starts or AUTO resumes. Or the end of the former leg, if
+//   MISSION_ITEM_REACHED reports that it was reached, within 15 m (PX4's acceptance radius is 10 m): both stacks then
+//   fly along the line between the items.
 //   End: WAYPOINT (16): its place. LOITER_UNLIM, LOITER_TIME (17, 19) of a copter: their place, until within 3 m. LAND
 //   (21) of a copter: level to above its place, until within 3 m. TAKEOFF (22) of a copter: straight up to its height;
 //   PX4 goes on to its place afterwards. An altitude of 0 means the present one to ArduPilot. The leg to any other item

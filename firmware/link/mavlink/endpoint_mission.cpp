@@ -288,9 +288,6 @@ std::optional<world::Leg> Endpoint::find_leg(TimePoint now) noexcept
         return std::nullopt;
     }
     if (!has_anchor_ || anchor_version_ != mission_.version()) {
-        if (autopilot_.mode != FlightMode::mission) {
-            return std::nullopt;  // its start is the position at which the mission continues
-        }
         anchor_leg(now);
     }
     settle_anchor();

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/world/conflict.hpp"
 #include "tests/oracle/reference_ends.hpp"
 
 namespace jink::app {
@@ -131,7 +132,7 @@ TEST_F(NominalKept, ConflictOnTheMotionIsFlownOnTheMotionAndOneOnTheLegOnTheLeg)
         paths.reset();
         fly(Vec3(5, 0, 0), 2.0F);
         EXPECT_TRUE(paths.is_intended());
-        paths.note(true, on_other, false);
+        paths.note(true, on_other);
         tick(true);
         EXPECT_EQ(paths.is_intended(), !on_other);
         ASSERT_NE(paths.other(), nullptr);
@@ -144,13 +145,13 @@ TEST_F(NominalKept, ConflictOnTheMotionIsFlownOnTheMotionAndOneOnTheLegOnTheLeg)
 TEST_F(NominalKept, TicksWithoutAConflictKeepWhichOneItWasOn)
 {
     fly(Vec3(5, 0, 0), 1.0F);
-    paths.note(true, true, false);
+    paths.note(true, true);
     tick();
-    paths.note(false, false, false);
+    paths.note(false, false);
     tick(true);
     EXPECT_FALSE(paths.is_intended());
     fly(Vec3(5, 0, 0), 0.1F);
-    paths.note(true, false, false);
+    paths.note(true, false);
     tick(true);
     EXPECT_TRUE(paths.is_intended());
 }
@@ -158,7 +159,7 @@ TEST_F(NominalKept, TicksWithoutAConflictKeepWhichOneItWasOn)
 TEST_F(NominalKept, ConflictOnTheLegIsNotOneOnTheMotionATickLater)
 {
     fly(Vec3(5, 0, 0), 1.0F);
-    paths.note(true, false, false);
+    paths.note(true, false);
     fly(Vec3(5, 0, 0), 0.1F);
     tick(true);
     EXPECT_TRUE(paths.is_intended());
@@ -168,11 +169,11 @@ TEST_F(NominalKept, DoubtedLegIsNotFlownWhateverTheConflictWasOn)
 {
     fly(Vec3(0, 5, 0), 3.0F);
     ASSERT_FALSE(paths.believes_leg());
-    paths.note(true, false, false);
+    paths.note(true, false);
     tick(true);
     EXPECT_FALSE(paths.is_intended());
     EXPECT_EQ(paths.other(), nullptr) << "nor does it have to be clear";
-    paths.note(false, false, true);
+    paths.note(false, false);
     tick(true);
     EXPECT_FALSE(paths.is_intended());
     fly(Vec3(0, 5, 0), 0.1F);
@@ -182,7 +183,7 @@ TEST_F(NominalKept, DoubtedLegIsNotFlownWhateverTheConflictWasOn)
 TEST_F(NominalKept, DoubtForgetsThatAConflictWasOnTheMotion)
 {
     fly(Vec3(5, 0, 0), 1.0F);
-    paths.note(true, true, false);
+    paths.note(true, true);
     fly(Vec3(0, 5, 0), 3.0F);
     ASSERT_FALSE(paths.believes_leg());
     leg = {own.position, own.position + Vec3(0, 900, 0), 0.0F};
@@ -192,40 +193,88 @@ TEST_F(NominalKept, DoubtForgetsThatAConflictWasOnTheMotion)
     EXPECT_TRUE(paths.is_intended()) << "of that conflict nothing is left";
 }
 
-TEST_F(NominalKept, LegIsFlownOnceItIsTheLegsConflictThatKeepsControl)
+TEST_F(NominalKept, LegIsFlownOnceTheMotionsConflictIsOver)
 {
     fly(Vec3(5, 0, 0), 1.0F);
-    paths.note(true, true, false);
+    paths.note(true, true);
     tick(true);
-    paths.note(true, false, false);
+    paths.note(true, false);
     tick(true);
     EXPECT_FALSE(paths.is_intended()) << "the motion's conflict goes on";
-    paths.note(false, false, true);
+    paths.note(false, false);
     EXPECT_TRUE(paths.is_intended()) << "at once";
     tick(true);
     EXPECT_TRUE(paths.is_intended());
 }
 
-TEST_F(NominalKept, LegThatIsLostInControlLeavesTheMotionForGood)
+TEST_F(NominalKept, LegThatIsLostInControlLeavesTheMotionUntilItIsClear)
 {
     fly(Vec3(5, 0, 0), 1.0F);
-    paths.note(true, false, false);
+    paths.note(true, false);
     tick(true);
     ASSERT_TRUE(paths.is_intended());
     has_leg = false;
     tick(true);
     EXPECT_FALSE(paths.is_intended());
+    paths.note(false, false);
+    tick(true);
+    EXPECT_FALSE(paths.is_intended()) << "there is no leg";
     has_leg = true;
     tick(true);
     EXPECT_FALSE(paths.is_intended());
     EXPECT_NE(paths.other(), nullptr) << "the leg that came back has to be clear";
+    paths.note(true, false);
+    tick(true);
+    EXPECT_FALSE(paths.is_intended()) << "the motion's conflict goes on";
+    paths.note(false, false);
+    EXPECT_TRUE(paths.is_intended());
+}
+
+/// The motion goes on for a minute; the leg ends at its item.
+TEST_F(NominalKept, PastTheEndOfItsLegTheVehicleReturns)
+{
+    leg.end = Vec3(12, 0, 50);
+    fly(Vec3(5, 0, 0), 2.0F);
+    paths.note(true, true);
+    for (int i = 0; i < 100; ++i) {
+        fly(Vec3(5, 0, 0), 0.02F, true);
+        paths.note(true, false);
+    }
+    ASSERT_FALSE(paths.is_intended());
+    ASSERT_GT(own.position.x(), leg.end.x() + 5.0F);
+    paths.note(false, false);
+    tick(true);
+    const vehicle::Airframe airframe{};
+    const world::FlightRules rules;
+    const world::Way way = world::way_of({now, own, limits, airframe, paths.primary(), rules});
+    EXPECT_LT(way.direction.x(), -0.99F);
+    EXPECT_NEAR(way.length, own.position.x() - leg.end.x(), 0.01F);
+}
+
+/// Where the mission is read only after the take-over.
+TEST_F(NominalKept, LegThatIsReportedInControlIsFlown)
+{
+    has_leg = false;
+    fly(Vec3(5, 0, 0), 1.0F);
+    paths.note(true, false);
+    tick(true);
+    leg = {own.position, own.position + Vec3(0, 30, 0), 0.0F};
+    has_leg = true;
+    tick(true);
+    paths.note(true, false);
+    tick(true);
+    EXPECT_FALSE(paths.is_intended());
+    ASSERT_NE(paths.other(), nullptr) << "the leg has to be clear too";
+    paths.note(false, false);
+    tick(true);
+    EXPECT_EQ(end_of(paths.primary()), leg.end);
 }
 
 TEST_F(NominalKept, CommandsOfOursContradictNoLegNorDoTheyWearItOut)
 {
     fly(Vec3(5, 0, 0), 1.0F);
     fly(Vec3(0, 5, 0), 1.4F);
-    paths.note(true, false, false);
+    paths.note(true, false);
     fly(Vec3(0, 5, 0), 5.0F, true);
     EXPECT_TRUE(paths.believes_leg());
     fly(Vec3(0, 5, 0), 1.4F);
@@ -261,7 +310,7 @@ TEST_F(NominalKept, StraightMotionAfterAKeptTurnIsKeptStraight)
 TEST_F(NominalKept, MotionIsTheOtherPathInControlOfTheLeg)
 {
     fly(Vec3(5, 0, 0), 1.0F);
-    paths.note(true, false, false);
+    paths.note(true, false);
     fly(Vec3(0, 3, 0), 0.5F, true);
     ASSERT_TRUE(paths.is_intended());
     ASSERT_NE(paths.other(), nullptr);

@@ -196,7 +196,7 @@ TEST_F(NominalPathsTest, TakenOverOnTheMotionThatPathIsKept)
     fly(Vec3(5, 0, 0), 2.0F);
     fly(Vec3(0, 5, 0), 0.5F);
     ASSERT_TRUE(paths.believes_leg());
-    paths.note(true, true, false);
+    paths.note(true, true);
     const Vec3 at = own.position;
     fly(Vec3(-5, 0, 0), 3.0F, 0.0F, true);
     EXPECT_LT((start_of(paths.primary()) - at).norm(), 0.2F);
@@ -204,7 +204,7 @@ TEST_F(NominalPathsTest, TakenOverOnTheMotionThatPathIsKept)
     ASSERT_NE(paths.other(), nullptr);
     EXPECT_EQ(end_of(*paths.other()), leg.end) << "the leg has to be clear too";
     EXPECT_TRUE(paths.believes_leg()) << "our commands say nothing of the autopilot's intent";
-    paths.note(false, false, true);
+    paths.note(false, false);
     update(true);
     EXPECT_EQ(end_of(paths.primary()), leg.end) << "what is left to solve is the leg's conflict";
 }
@@ -278,7 +278,7 @@ TEST_F(NominalPathsTest, AKeptTurnIsFlownToItsEnd)
 TEST_F(NominalPathsTest, TakenOverOnTheLegTheLegIsFlown)
 {
     fly(Vec3(5, 0, 0), 2.0F);
-    paths.note(true, false, false);
+    paths.note(true, false);
     fly(Vec3(3, 3, 0), 3.0F, 0.0F, true);
     EXPECT_EQ(end_of(paths.primary()), leg.end);
     EXPECT_NEAR(paths.primary().speed, 5.0F, 0.01F);

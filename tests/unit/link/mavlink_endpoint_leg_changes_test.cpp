@@ -49,6 +49,63 @@ TEST_F(MavlinkEndpointLegChanges, AnExternalModeThatFollowsTheMissionKeepsTheLeg
     }
 }
 
+/// The mission is read within seconds of the start, and again when it is replaced: a take-over may come first. Both
+/// autopilots go on to the item from where they get the vehicle back.
+TEST_F(MavlinkEndpointLegChanges, AMissionThatIsReadInAnExternalModeGivesALegFromThere)
+{
+    for (const std::uint8_t stack : {std::uint8_t{3}, std::uint8_t{12}}) {
+        endpoint = std::make_unique<Endpoint>();
+        clear();
+        mission = {item_of(16, kLat, kLon, 488.0F, 0), north(300), north(600)};
+        own = {0, 0, -30};
+        heartbeat(stack, stack == 3 ? kAuto : kPx4Mission);
+        origin();
+        home();
+        local_position(own);
+        heartbeat(stack, stack == 3 ? kGuided : kPx4Offboard);
+        own = {50, 60, -30};
+        run(0.5F);
+        EXPECT_FALSE(inbox->has_leg) << "no item is current yet";
+        current(1);
+        run(0.5F);
+        expect_leg({60, 50, 30}, {0, 300, 30});
+        clear();
+        own = {70, 80, -30};
+        run(0.02F);
+        current(2);
+        run(0.5F);
+        expect_leg({80, 70, 30}, {0, 600, 30});
+        clear();
+        run(0.5F);
+        EXPECT_FALSE(inbox->leg_lost);
+        own = {90, 80, -30};
+        run(0.02F);
+        heartbeat(stack, stack == 3 ? kAuto : kPx4Mission);
+        expect_leg({80, 90, 30}, {0, 600, 30});
+    }
+}
+
+/// Nobody's mission is gone on with after a mode in between, nor from an external mode that was there first.
+TEST_F(MavlinkEndpointLegChanges, AMissionThatIsReadInAModeOfSomebodyElseGivesNoLeg)
+{
+    for (const bool after_the_mission : {false, true}) {
+        endpoint = std::make_unique<Endpoint>();
+        clear();
+        mission = {item_of(16, kLat, kLon, 488.0F, 0), north(300)};
+        if (after_the_mission) {
+            heartbeat(3, kAuto);
+            heartbeat(3, kLoiter);
+        }
+        heartbeat(3, kGuided);
+        origin();
+        home();
+        local_position(own);
+        current(1);
+        run(1.0F);
+        EXPECT_FALSE(inbox->has_leg) << after_the_mission;
+    }
+}
+
 TEST_F(MavlinkEndpointLegChanges, NoLegBeforeArming)
 {
     fly({north(300)});
