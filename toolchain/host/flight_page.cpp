@@ -145,24 +145,6 @@ Json json(const PageFlight& flight)
 
 }  // namespace
 
-std::string_view name_of(Fate fate) noexcept
-{
-    switch (fate) {
-    case Fate::chosen: return "chosen";
-    case Fate::clear: return "clear";
-    case Fate::contact: return "contact";
-    case Fate::not_flyable: return "not_flyable";
-    case Fate::more_expensive: return "more_expensive";
-    case Fate::budget_spent: return "budget_spent";
-    }
-    return "?";
-}
-
-Fate fate_of_unchecked(bool has_cost, bool plan_found, bool above_max_cost) noexcept
-{
-    return has_cost && (plan_found || above_max_cost) ? Fate::more_expensive : Fate::budget_spent;
-}
-
 std::string page_data(const std::vector<PageSource>& sources)
 {
     Json all = Json::array();

@@ -9,7 +9,6 @@
 #include "firmware/app/takeover.hpp"
 #include "firmware/linux/flight_log/topics.hpp"
 #include "firmware/linux/flight_log/ulog_reader.hpp"
-#include "toolchain/host/candidate_curve.hpp"
 #include "toolchain/host/flight_page.hpp"
 #include "toolchain/host/log_fields.hpp"
 #include "toolchain/host/log_summary.hpp"
@@ -173,22 +172,14 @@ void LogFlight::note_candidate(const LogFields& topic, double time)
     PageCandidate candidate;
     const bool has_cost = topic.number("time") > 0.0;
     candidate.cost = has_cost ? topic.number("cost") : kUnknown;
-    switch (static_cast<CandidateStatus>(topic.code("status"))) {
-    case CandidateStatus::available: candidate.fate = Fate::clear; break;
-    case CandidateStatus::chosen: candidate.fate = Fate::chosen; break;
-    case CandidateStatus::hits_static:
-    case CandidateStatus::hits_moving:
-    case CandidateStatus::hits_airspace: candidate.fate = Fate::contact; break;
-    case CandidateStatus::not_flyable: candidate.fate = Fate::not_flyable; break;
-    case CandidateStatus::not_evaluated: candidate.fate = Fate::budget_spent; break;  // settle_fates
-    }
+    candidate.fate = flightlog::fate_of(static_cast<CandidateStatus>(topic.code("status")));  // settle_fates
     const unsigned family = topic.code("family");
     if (const Curve& curve = curve_of_[number]; curve.is_known && family < geometric::kFamilies.size()) {
         geometric::CandidateShape shape;
         shape.family = static_cast<geometric::Family>(family);
         shape.plane = static_cast<float>(topic.number("plane"));
         shape.offset = static_cast<float>(topic.number("offset"));
-        candidate.points = candidate_curve(shape, curve.start, curve.to);
+        candidate.points = flightlog::candidate_curve(shape, curve.start, curve.to);
     }
     decision(number, time).candidates.push_back(std::move(candidate));
 }
@@ -200,7 +191,7 @@ void LogFlight::settle_fates()
                                        [](const PageCandidate& c) { return c.fate == Fate::chosen; });
         for (PageCandidate& c : decision.candidates) {
             if (c.fate == Fate::budget_spent) {
-                c.fate = fate_of_unchecked(std::isfinite(c.cost), found, c.cost > max_cost_);
+                c.fate = flightlog::fate_of_unchecked(std::isfinite(c.cost), found, c.cost > max_cost_);
             }
         }
     }

@@ -82,6 +82,15 @@ export function controlSpans(flight) {
     .filter((span) => span[2] && span[1] > span[0]);
 }
 
+/** How long nominal paths are shown without news: they come every 0.2 s [s]. */
+const NOMINAL_LIFE = 0.5;
+
+/** The paths that conflicts were looked for along at a time, or null. */
+export function nominalAt(flight, time) {
+  const i = indexAt(flight.nominal.t, time);
+  return i >= 0 && time <= flight.nominal.t[i] + NOMINAL_LIFE + 1e-6 ? flight.nominal.paths[i] : null;
+}
+
 /** How long a decision's candidates are shown after it, unless another one follows [s]. */
 const SHOWN = 10;
 
