@@ -82,8 +82,8 @@ function showTexts() {
     make("li", { className: event.level <= 3 ? "bad" : "" }, make("span", { textContent: measure(event.time, "s", 1) }), make("span", { textContent: event.text }))));
 }
 
-function showDecision() {
-  const decision = decisionAt(flight, flight.t[flight.t.length - 1]);
+function showDecision(time) {
+  const decision = decisionAt(flight, time);
   if (decision === shownDecision) return;
   shownDecision = decision;
   at("legend").replaceChildren(...candidateKeys(decision));
@@ -118,7 +118,7 @@ function take(json) {
   if (flight.safety_distance !== before) nameSeries();
   showConnection();
   showReadout();
-  showDecision();
+  showDecision(time);
 }
 
 charts.window = Number(at("window").value);
@@ -134,4 +134,4 @@ setInterval(showConnection, 250);
 const source = new EventSource("events");
 source.onmessage = (event) => take(JSON.parse(event.data));
 /** For tests. */
-window.jinkLive = { replay, charts, flight, source, count: () => events, state: () => state };
+window.jinkLive = { replay, charts, flight, source, showDecision, count: () => events, state: () => state };
