@@ -14,7 +14,7 @@
 #include "firmware/flight_log/ulog.hpp"
 
 // Topics of a flight log, of jinkd and of the boards alike. Each structure is the topic's content up to its last field,
-// and kFormat names the fields in the same order. Meaning and units: docs/guides/flight_log.md.
+// and kFormat names the fields in the same order. Meaning and units: docs/guides/flight_log_topics.md.
 
 namespace jink::flightlog {
 

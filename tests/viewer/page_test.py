@@ -205,6 +205,14 @@ def check_log(page, tables):
         page.run(f"jinkViewer.charts.onTime({time})")
         expect(shown_fates(page) == fates(by_decision[number]), f"decision {number}: legend {shown_fates(page)}, expected {fates(by_decision[number])}")
         expect(sum(lines_by_fate(page).values()) == len(by_decision[number]), f"decision {number}: every candidate is a line")
+    with open(tables / "jink_nominal.csv", encoding="utf-8") as file:
+        logged = list(csv.DictReader(file))
+    shown = page.run("jinkViewer.state().flight.nominal.t")
+    times = sorted({(int(n["timestamp"]) - int(steps[0]["timestamp"])) * 1e-6 for n in logged})
+    expect(len(shown) == len(times) > 20 and all(abs(a - b) < 2e-3 for a, b in zip(shown, times)), f"{len(shown)} times of nominal paths, logged {len(times)}")
+    page.run(f"jinkViewer.charts.onTime({decisions[0] - 0.5})")
+    nominal = page.pixels("jinkViewer.replay", {"nominal": (0x0F, 0x9A, 0xA0)})["found"]["nominal"]
+    expect(nominal > 20 and page.run("jinkViewer.replay.nominal.children.length") > 0, f"nominal paths are drawn: {nominal} pixels")
     work = page.run("Math.max(...jinkViewer.state().flight.work.filter(v => v == v))")
     expect(work == max(int(s["work"]) for s in steps), f"most work units {work}")
     expect(page.run("document.querySelectorAll('#charts .control').length") > 0, "times of control are marked")

@@ -41,6 +41,13 @@ struct PageDecision {
     std::vector<PageCandidate> candidates;
 };
 
+/// A path that conflicts were looked for along.
+struct PageNominal {
+    double time = 0.0;
+    bool on_route = false;  ///< as the link reports it; else from the measured motion
+    Columns3 points;
+};
+
 struct PageEvent {
     double time = 0.0;
     std::string kind;  ///< "text" (STATUSTEXT), "state", "threat", "closest"
@@ -88,6 +95,7 @@ struct PageFlight {
     std::vector<PageEvent> events;
     std::vector<PageDecision> decisions;
     std::vector<PageThreat> threats;
+    std::vector<PageNominal> nominal;  ///< in order of time; of a flight log
 };
 
 /// One input: its flights, in its order.

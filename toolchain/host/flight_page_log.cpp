@@ -12,6 +12,7 @@
 #include "toolchain/host/flight_page.hpp"
 #include "toolchain/host/log_fields.hpp"
 #include "toolchain/host/log_summary.hpp"
+#include "toolchain/host/nominal_log.hpp"
 
 namespace jink::host {
 namespace {
@@ -111,6 +112,8 @@ private:
     std::map<unsigned, std::vector<Sighting>> tracks_;
     std::map<unsigned, std::size_t> decision_of_;  // number in the log: index in flight_.decisions
     std::map<unsigned, Curve> curve_of_;
+    NominalLog nominal_;
+    double lookahead_ = 8.0;
     unsigned control_ = 0xFFFF;
 };
 
@@ -231,6 +234,8 @@ void LogFlight::note_data(const ulog::Format& format, std::span<const std::byte>
         note_decision(fields, *time);
     } else if (format.name == "jink_candidate") {
         note_candidate(fields, *time);
+    } else if (format.name == "jink_nominal") {
+        nominal_.note(fields, *time);
     }
 }
 
@@ -320,6 +325,7 @@ void LogFlight::read()
     };
     flight_.safety_distance = parameter("JNK_HALF_XY");
     max_cost_ = std::isnan(parameter("GEO_MAX_COST")) ? max_cost_ : parameter("GEO_MAX_COST");
+    lookahead_ = std::isnan(parameter("JNK_LOOKAHEAD")) ? lookahead_ : parameter("JNK_LOOKAHEAD");
     flight_.origin = "flight log, " + log_text(log.info("sys_name")) + " " + log_text(log.info("ver_sw"));
 }
 
@@ -331,6 +337,13 @@ PageFlight LogFlight::page()
     settle_fates();
     sample(flight_);
     add_tracks(flight_);
+    flight_.nominal = nominal_.curves(
+        [&](double time) {
+            const OwnAt* const own = latest(own_, time, kTrackLife);
+            const std::array<double, 3> at = own != nullptr ? carried(*own, time) : unknown();
+            return Vec3(static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2]));
+        },
+        static_cast<float>(lookahead_));
     if (flight_.least == flight_.least) {
         flight_.events.push_back({flight_.least_time, "closest", "closest to " + flight_.least_threat});
     }

@@ -4,7 +4,7 @@ import { Charts } from "./charts.js";
 import { decisionAt } from "./data.js";
 import { LiveFlight, separationTo } from "./live_flight.js";
 import { Replay } from "./replay.js";
-import { COLOURS, NOMINAL, candidateKeys, decisionText, key, make, measure } from "./words.js";
+import { COLOURS, candidateKeys, decisionText, key, make, measure, nominalKeys } from "./words.js";
 
 const at = (id) => document.getElementById(id);
 /** Without an event for longer the page says that it is old [ms]. */
@@ -67,7 +67,7 @@ function showReadout() {
   const rows = [["time", measure(state.time, "s", 1)], ["separation", measure(flight.separation[i], "m")], ["speed", measure(flight.speed[i], "m/s", 1)],
     ["commanded", measure(flight.commanded[i], "m/s", 1)], ["height", measure(flight.own[2][i], "m", 1)], ["age of own state", measure(state.own && state.own.age, "s")],
     ["guidance", state.guidance], ["manoeuvre", state.manoeuvre], ["conflict", conflict ? `${conflict.kind} ${conflict.id} in ${measure(conflict.time, "s", 1)}` : "none"],
-    ["nominal path", state.nominal.map((n) => `${n.kind} at ${measure(n.speed, "m/s", 1)}`).join(", ") || "none"], ["work units", measure(state.work, "", 0)], ["longest step", measure(state.longest_step_ms, "ms")], ["deadlines missed", measure(state.deadlines_missed, "", 0)],
+    ["nominal path", state.nominal.length ? state.nominal[0].kind : "none"], ["work units", measure(state.work, "", 0)], ["longest step", measure(state.longest_step_ms, "ms")], ["deadlines missed", measure(state.deadlines_missed, "", 0)],
     ["decisions", measure(state.decisions, "", 0)], ["obstacles", measure(state.obstacles, "", 0)], ["closed areas", measure(state.areas, "", 0)],
     ["messages lost", measure(state.page.messages_lost, "", 0)]];
   at("readout").replaceChildren(...rows.map(([name, value]) => make("div", {}, make("dt", { textContent: name }), make("dd", { textContent: value }))));
@@ -95,7 +95,7 @@ function nameSeries() {
   if (flight.safety_distance !== null) keys.push(key(COLOURS.limit, `${measure(flight.safety_distance, "m")}: half extent of the safety box, JNK_HALF_XY`, { dashed: true }));
   at("series").replaceChildren(...keys, key(COLOURS.control, "jink has control", { width: 8 }), key(COLOURS.decision, "decision", { width: 6 }));
   at("paths").replaceChildren(...(replay ? [key(COLOURS.own, "flown under jink\u2019s control", { width: 4 }), key(COLOURS.mission, "flown by the autopilot", { width: 2.5 }),
-    key(COLOURS.threat, "tracks"), ...Object.values(NOMINAL).map((n) => key(COLOURS.nominal, n.text, n))] : []));
+    key(COLOURS.threat, "tracks"), ...nominalKeys()] : []));
 }
 
 function take(json) {

@@ -41,6 +41,8 @@ export function make(tag, attributes = {}, ...children) {
   return element;
 }
 
+export const nominalKeys = () => Object.values(NOMINAL).map((n) => key(COLOURS.nominal, n.text, n));
+
 /** The entries of a legend for a decision's candidates, with their numbers. */
 export function candidateKeys(decision) {
   const counts = {};
