@@ -14,7 +14,7 @@
 #include "firmware/flight_log/ulog.hpp"
 
 // Topics of a flight log, of jinkd and of the boards alike. Each structure is the topic's content up to its last field,
-// and kFormat names the fields in the same order. Meaning and units: docs/guides/flight_log.md.
+// and kFormat names the fields in the same order. Meaning and units: docs/guides/flight_log_topics.md.
 
 namespace jink::flightlog {
 
@@ -167,9 +167,20 @@ struct StreamTopic {
     std::uint32_t ring_peak = 0;
 };
 
-/// Ids of the topics, in the order of their subscriptions in a file of jinkd; a board streams the first ones.
-/// In the place of `log` a board streams StreamTopic.
-enum class TopicId : std::uint16_t { step, own, track, decision, candidate, app_counters, avoid_counters, log, hal };
+/// Ids of the topics, in the order of their subscriptions in a file of jinkd; a board streams some of those before
+/// `nominal`. In the place of `log` a board streams StreamTopic.
+enum class TopicId : std::uint16_t {
+    step,
+    own,
+    track,
+    decision,
+    candidate,
+    app_counters,
+    avoid_counters,
+    log,
+    nominal,
+    hal
+};
 
 template <class T>
 struct Counter {

@@ -22,10 +22,10 @@ struct LogOptions {
 class TwoOutputs final : public flightlog::Output {
 public:
     TwoOutputs(flightlog::Output& files, flightlog::Output& page) : files_(files), page_(page) {}
-    bool add(std::span<const std::byte> messages, std::uint32_t count) noexcept override
+    bool add(std::span<const std::byte> messages, std::uint32_t count, flightlog::Records records) noexcept override
     {
-        static_cast<void>(page_.add(messages, count));
-        return files_.add(messages, count);
+        static_cast<void>(page_.add(messages, count, records));
+        return files_.add(messages, count, records);
     }
     void lose() noexcept override
     {

@@ -271,7 +271,7 @@ int run(const Options& options, const app::Parameters& initial, const files::Par
     hal::SystemClock clock;
     std::unique_ptr<livepage::LivePage> page;
     if (!options.page.address.empty()) {
-        page = livepage::LivePage::open(options.page, stored[static_cast<std::size_t>(app::Param::half_xy)]);
+        page = livepage::LivePage::open(options.page, stored);
         if (!page) {
             return kRefused;
         }

@@ -25,6 +25,7 @@ TOP = pathlib.Path(__file__).resolve().parents[2]
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(TOP / "tests/viewer"))
 import browser  # noqa: E402
+from page_paths import check_decisions, check_nominal, check_paths, distance_to_path  # noqa: E402
 from page_client import MAX_CLIENTS, MAX_HEAD, PATIENCE, STUB, Hearer, Running, answer, connect, free_port, get, read_all, until  # noqa: E402
 
 # --- refusals
@@ -213,9 +214,11 @@ def check_server(options):
 # --- flight
 
 class Listening(threading.Thread):
+    """Keeps all events, and the first one that a client hears who comes after a decision."""
+
     def __init__(self, port):
         super().__init__(daemon=True)
-        self.port, self.events = port, []
+        self.port, self.events, self.first_of_late = port, [], None
 
     def run(self):
         end = time.monotonic() + PATIENCE
@@ -228,18 +231,12 @@ class Listening(threading.Thread):
         try:
             while True:
                 self.events.append(hearer.next())
+                if self.first_of_late is None and any(e["decision"] for e in self.events[:-1]):
+                    late = Hearer(self.port)
+                    self.first_of_late = late.next()
+                    late.close()
         except (EOFError, ConnectionResetError):
             pass
-
-
-def distance_to_path(path, point):
-    """From a point to a line through points."""
-    def to_piece(a, b):
-        ab, ap = [y - x for x, y in zip(a, b)], [y - x for x, y in zip(a, point)]
-        square = sum(v * v for v in ab)
-        share = min(1.0, max(0.0, sum(x * y for x, y in zip(ab, ap)) / square)) if square else 0.0
-        return math.dist(point, [x + share * v for x, v in zip(a, ab)])
-    return min(to_piece(a, b) for a, b in zip(path, path[1:]))
 
 
 def check_events(events, flight):
@@ -267,6 +264,8 @@ def check_events(events, flight):
     texts = [t["text"] for e in events for t in e["texts"]]
     assert any("control" in t for t in texts) and any("new manoeuvre" in t for t in texts), texts
     assert sorted(set(numbers)) == list(range(numbers[0], numbers[-1] + 1)), numbers
+    check_decisions(events, flight)
+    check_nominal(events, flight)
 
 
 def check_browser(port):
@@ -285,9 +284,11 @@ def check_browser(port):
         assert before[0] != after[0] and before[1] != after[1], "the picture does not move"
         assert after[2] >= 3 and "live" in after[3] and "control" in after[3], after[2:]
         assert page.run("document.querySelectorAll('#tracks tr').length") >= 1 and page.run("document.body.classList.contains('stale')") is False
+        until(lambda: page.run("jinkLive.flight.decisions.length > 0"), "no decision on the page")
         page.run("jinkLive.source.close()")
         until(lambda: page.run("document.body.classList.contains('stale')"), "old data look new")
         assert "no data" in page.run("document.getElementById('connection').textContent")
+        check_paths(page)
         assert page.errors == [], page.errors
         assert set(page.requests) - {"data:,"} == {f"http://127.0.0.1:{port}/", f"http://127.0.0.1:{port}/events"}, set(page.requests)
     finally:
@@ -318,6 +319,8 @@ def check_flight(options):
         run = json.loads((folder / "out/run.json").read_text())
         assert flying.returncode == 0, said
         check_events(listening.events, run["flights"][0])
+        numbers = [e["decision"]["number"] for e in listening.events if e["decision"]]
+        assert listening.first_of_late["decision"]["number"] in numbers, "a new client is not sent the newest decision"
         if not shows:
             print("the page itself was not shown: neither chromium nor the built page")
 

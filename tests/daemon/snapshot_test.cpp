@@ -2,73 +2,16 @@
 // Events of the live page, made of messages of the flight log: read back by another JSON reader.
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <limits>
 #include <random>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
-
-#include "firmware/linux/live_page/snapshot.hpp"
+#include "tests/daemon/snapshot_fixture.hpp"
 
 namespace jink::livepage {
 namespace {
-
-using flightlog::OwnTopic;
-using flightlog::StepTopic;
-using flightlog::TopicId;
-using flightlog::TrackTopic;
-using Json = nlohmann::json;
-
-constexpr std::uint64_t kStart = 5'000'000'000;  // [us]
-
-class SnapshotTest : public testing::Test {
-protected:
-    Snapshot snapshot{1.5F};
-
-    void take(ulog::Type type, std::span<const std::byte> content)
-    {
-        std::array<std::byte, 70'000> buffer{};
-        snapshot.take(ulog::Composer(buffer).begin(type).put_bytes(content).end());
-    }
-    template <class T>
-    void take(TopicId id, const T& topic)
-    {
-        std::array<std::byte, 1024> buffer{};
-        snapshot.take(ulog::Composer(buffer)
-                          .begin(ulog::Type::data)
-                          .put(static_cast<std::uint16_t>(id))
-                          .put_bytes(flightlog::content_of(topic))
-                          .end());
-    }
-    void take_step(double seconds, std::uint8_t own_source = 1)
-    {
-        StepTopic step;
-        step.timestamp = kStart + static_cast<std::uint64_t>(seconds * 1e6);
-        step.own_source = own_source;
-        take(TopicId::step, step);
-    }
-    void take_track(std::uint32_t id, double seconds, const flightlog::Xyz& at, const flightlog::Xyz& velocity)
-    {
-        TrackTopic track;
-        track.timestamp = kStart + static_cast<std::uint64_t>(seconds * 1e6);
-        track.id = id;
-        track.position = at;
-        track.velocity = velocity;
-        track.radius = 2.0F;
-        take(TopicId::track, track);
-    }
-    void take_text(std::string_view text)
-    {
-        std::array<std::byte, 512> buffer{};
-        snapshot.take(
-            ulog::Composer(buffer).begin(ulog::Type::text).put(ulog::Level::warning).put(kStart).put_text(text).end());
-    }
-    [[nodiscard]] Json event(bool all = false) const { return Json::parse(snapshot.json(all, {1, 2, 3, 4})); }
-};
 
 TEST_F(SnapshotTest, OwnStateAndTracksAreCarriedToTheStep)
 {
@@ -179,8 +122,10 @@ TEST_F(SnapshotTest, AnyMessagesGiveJson)
     const std::uint64_t seed = std::random_device{}();
     std::mt19937_64 random(seed);
     constexpr std::string_view kTypes = "DDDDLPOSX";
-    constexpr std::array<std::size_t, 3> kSizes{2 + flightlog::kBytesOf<StepTopic>, 2 + flightlog::kBytesOf<OwnTopic>,
-                                                2 + flightlog::kBytesOf<TrackTopic>};
+    constexpr std::array<std::size_t, 6> kSizes{
+        2 + flightlog::kBytesOf<StepTopic>,      2 + flightlog::kBytesOf<OwnTopic>,
+        2 + flightlog::kBytesOf<TrackTopic>,     2 + flightlog::kBytesOf<DecisionTopic>,
+        2 + flightlog::kBytesOf<CandidateTopic>, 2 + flightlog::kBytesOf<NominalTopic>};
     constexpr std::size_t kBools = 7;  // at the end of a step's topic
     for (int i = 0; i < 20'000; ++i) {
         std::vector<std::byte> bytes(random() % 2 == 0 ? 10 + random() % 200 : kSizes[random() % kSizes.size()]);
@@ -191,7 +136,7 @@ TEST_F(SnapshotTest, AnyMessagesGiveJson)
             bytes[k] &= std::byte{1};
         }
         if (random() % 4 != 0) {
-            bytes[0] = static_cast<std::byte>(random() % 4);
+            bytes[0] = static_cast<std::byte>(random() % 10);
             bytes[1] = std::byte{0};
         }
         take(static_cast<ulog::Type>(kTypes[random() % kTypes.size()]), bytes);

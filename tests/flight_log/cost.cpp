@@ -20,7 +20,7 @@ constexpr std::size_t kQueueBytes = 1U << 26U;
 
 class LargeQueue final : public flightlog::Output {
 public:
-    bool add(std::span<const std::byte> messages, std::uint32_t count) noexcept override
+    bool add(std::span<const std::byte> messages, std::uint32_t count, flightlog::Records /*records*/) noexcept override
     {
         return queue_.add(messages, 0, count);
     }

@@ -272,7 +272,7 @@ TEST(LogWriter, AStalledDiskNeverDelaysTheLoop)
     while (writer.counts().dropped < 1'000) {
         const std::size_t n = 3U + ulog::read_number<std::uint16_t>(data);
         writer.set_time(now += 20'000);
-        writer.add(data.first(n), 1);
+        writer.add(data.first(n), 1, {});
         ++given;
         data = n < data.size() ? data.subspan(n) : flown().data();
         if (given == 2'000) {  // the thread is at the disk before the queue is full
@@ -300,7 +300,7 @@ TEST(LogWriter, AStalledDiskDoesNotHoldUpTheEnd)
     {
         Writer writer({"folder"}, definitions_of(plain_setup()), std::make_unique<StalledDisk>(gate), 1U << 20U);
         const std::span<const std::byte> data = flown().data();
-        writer.add(data.first(whole_messages(data, 1'000)), 1);
+        writer.add(data.first(whole_messages(data, 1'000)), 1, {});
         while (gate->calls == 0) {
             std::this_thread::yield();
         }

@@ -102,6 +102,39 @@ TEST(FlightPage, CandidatesBeginAtTheVehicleAndTheChosenOneIsTheCheapestThatIsCl
     EXPECT_GT(chosen, 0U);
 }
 
+/// Until something is in the way the vehicle flies where the paths led.
+TEST(FlightPage, NominalPathsLeadWhereTheVehicleFlies)
+{
+    const Scratch scratch;
+    const host::PageFlight flight = page_of(scratch, page_flight().log);
+    const auto own_at = [&](double time) {
+        const auto i = static_cast<std::size_t>(time / 0.1);
+        return std::array{flight.own.x.at(i), flight.own.y.at(i), flight.own.z.at(i)};
+    };
+    std::size_t compared = 0;
+    double before = 0.0;
+    for (const host::PageNominal& nominal : flight.nominal) {
+        EXPECT_GE(nominal.time, before);
+        before = nominal.time;
+        ASSERT_GE(nominal.points.x.size(), 2U);
+        const auto own = own_at(nominal.time);
+        if (std::isnan(own[0]) || nominal.time < 2.0 || nominal.time > flight.decisions.at(0).time - 1.0) {
+            continue;
+        }
+        EXPECT_LT(std::hypot(nominal.points.x[0] - own[0], nominal.points.y[0] - own[1], nominal.points.z[0] - own[2]),
+                  1.5);
+        const auto later = own_at(nominal.time + 1.0);
+        const double along_x = nominal.points.x[1] - nominal.points.x[0];
+        const double along_y = nominal.points.y[1] - nominal.points.y[0];
+        const double moved_x = later[0] - own[0];
+        const double moved_y = later[1] - own[1];
+        EXPECT_GT(along_x * moved_x + along_y * moved_y,
+                  0.9 * std::hypot(along_x, along_y) * std::hypot(moved_x, moved_y));
+        ++compared;
+    }
+    EXPECT_GT(compared, 10U);
+}
+
 TEST(FlightPage, DamagedLogsGiveAPageOrAReason)
 {
     const Scratch scratch;

@@ -35,7 +35,7 @@ public:
         : bytes_(flightlog::head_of_file(flightlog::definitions_of(setup), 0, "jink_test", 0)), passed_(bytes_.size())
     {
     }
-    bool add(std::span<const std::byte> messages, std::uint32_t count) noexcept override
+    bool add(std::span<const std::byte> messages, std::uint32_t count, flightlog::Records /*records*/) noexcept override
     {
         bytes_.insert(bytes_.end(), messages.begin(), messages.end());
         passed_ += keys_.pass(std::span(bytes_).subspan(passed_));

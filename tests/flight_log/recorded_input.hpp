@@ -21,7 +21,8 @@ using Bytes = std::vector<std::byte>;
 /// Composes records with the real flight log and keeps their messages one by one.
 class RecordedInput final : public flightlog::Output {
 public:
-    bool add(std::span<const std::byte> messages, std::uint32_t /*count*/) noexcept override
+    bool add(std::span<const std::byte> messages, std::uint32_t /*count*/,
+             flightlog::Records /*records*/) noexcept override
     {
         while (!messages.empty()) {
             const std::size_t n = ulog::size_of_message(messages);

@@ -51,6 +51,26 @@ class Browser:
             self.call(f"{domain}.enable")
         self.resize(*SIZE)
 
+    def pixels(self, replay, colours):
+        """Pixels of a replay's canvas near each colour, and the number of different colours in it."""
+        return self.run("""(() => {
+          const replay = %s, source = replay.canvas, copy = document.createElement('canvas');
+          copy.width = source.width; copy.height = source.height;
+          const context = copy.getContext('2d', {willReadFrequently: true});
+          replay.render();
+          context.drawImage(source, 0, 0);
+          const data = context.getImageData(0, 0, copy.width, copy.height).data, wanted = %s, found = {}, seen = new Set();
+          for (const name in wanted) found[name] = 0;
+          for (let i = 0; i < data.length; i += 4) {
+            seen.add(data[i] << 16 | data[i + 1] << 8 | data[i + 2]);
+            for (const name in wanted) {
+              const [r, g, b] = wanted[name];
+              if (Math.abs(r - data[i]) <= 6 && Math.abs(g - data[i + 1]) <= 6 && Math.abs(b - data[i + 2]) <= 6) ++found[name];
+            }
+          }
+          return {found, different: seen.size};
+        })()""" % (replay, json.dumps(colours)))
+
     def close(self):
         os.close(self.write_end)
         os.close(self.read_end)

@@ -49,24 +49,7 @@ def lines_by_fate(page):
 
 
 def pixels(page, colours):
-    """Pixels of the canvas near each colour, and the number of different colours in it."""
-    return page.run("""(() => {
-      const replay = jinkViewer.replay, source = replay.canvas, copy = document.createElement('canvas');
-      copy.width = source.width; copy.height = source.height;
-      const context = copy.getContext('2d', {willReadFrequently: true});
-      replay.render();
-      context.drawImage(source, 0, 0);
-      const data = context.getImageData(0, 0, copy.width, copy.height).data, wanted = %s, found = {}, seen = new Set();
-      for (const name in wanted) found[name] = 0;
-      for (let i = 0; i < data.length; i += 4) {
-        seen.add(data[i] << 16 | data[i + 1] << 8 | data[i + 2]);
-        for (const name in wanted) {
-          const [r, g, b] = wanted[name];
-          if (Math.abs(r - data[i]) <= 6 && Math.abs(g - data[i + 1]) <= 6 && Math.abs(b - data[i + 2]) <= 6) ++found[name];
-        }
-      }
-      return {found, different: seen.size};
-    })()""" % json.dumps(colours))
+    return page.pixels("jinkViewer.replay", colours)
 
 
 def check_run(page, run):
@@ -222,6 +205,14 @@ def check_log(page, tables):
         page.run(f"jinkViewer.charts.onTime({time})")
         expect(shown_fates(page) == fates(by_decision[number]), f"decision {number}: legend {shown_fates(page)}, expected {fates(by_decision[number])}")
         expect(sum(lines_by_fate(page).values()) == len(by_decision[number]), f"decision {number}: every candidate is a line")
+    with open(tables / "jink_nominal.csv", encoding="utf-8") as file:
+        logged = list(csv.DictReader(file))
+    shown = page.run("jinkViewer.state().flight.nominal.t")
+    times = sorted({(int(n["timestamp"]) - int(steps[0]["timestamp"])) * 1e-6 for n in logged})
+    expect(len(shown) == len(times) > 20 and all(abs(a - b) < 2e-3 for a, b in zip(shown, times)), f"{len(shown)} times of nominal paths, logged {len(times)}")
+    page.run(f"jinkViewer.charts.onTime({decisions[0] - 0.5})")
+    nominal = page.pixels("jinkViewer.replay", {"nominal": (0x0F, 0x9A, 0xA0)})["found"]["nominal"]
+    expect(nominal > 20 and page.run("jinkViewer.replay.nominal.children.length") > 0, f"nominal paths are drawn: {nominal} pixels")
     work = page.run("Math.max(...jinkViewer.state().flight.work.filter(v => v == v))")
     expect(work == max(int(s["work"]) for s in steps), f"most work units {work}")
     expect(page.run("document.querySelectorAll('#charts .control').length") > 0, "times of control are marked")

@@ -99,6 +99,27 @@ Json json(const PageThreat& threat)
             {"position", json(threat.position, kMetres)}};
 }
 
+/// Columns of one value for each path: time, kind, points; and of their points, one path after the other.
+Json json(const std::vector<PageNominal>& nominal)
+{
+    Column times;
+    Column kinds;
+    Column sizes;
+    Columns3 points;
+    for (const PageNominal& one : nominal) {
+        times.push_back(one.time);
+        kinds.push_back(one.on_route ? 1.0 : 0.0);
+        sizes.push_back(static_cast<double>(one.points.x.size()));
+        points.x.insert(points.x.end(), one.points.x.begin(), one.points.x.end());
+        points.y.insert(points.y.end(), one.points.y.begin(), one.points.y.end());
+        points.z.insert(points.z.end(), one.points.z.begin(), one.points.z.end());
+    }
+    return {{"t", json(times, kSeconds)},
+            {"on_route", json(kinds, 1.0)},
+            {"sizes", json(sizes, 1.0)},
+            {"points", json(points, kMetres)}};
+}
+
 Json json(const PageFlight& flight)
 {
     Json phases = Json::array();
@@ -140,28 +161,11 @@ Json json(const PageFlight& flight)
             {"phases", phases},
             {"events", events},
             {"decisions", decisions},
-            {"threats", threats}};
+            {"threats", threats},
+            {"nominal", json(flight.nominal)}};
 }
 
 }  // namespace
-
-std::string_view name_of(Fate fate) noexcept
-{
-    switch (fate) {
-    case Fate::chosen: return "chosen";
-    case Fate::clear: return "clear";
-    case Fate::contact: return "contact";
-    case Fate::not_flyable: return "not_flyable";
-    case Fate::more_expensive: return "more_expensive";
-    case Fate::budget_spent: return "budget_spent";
-    }
-    return "?";
-}
-
-Fate fate_of_unchecked(bool has_cost, bool plan_found, bool above_max_cost) noexcept
-{
-    return has_cost && (plan_found || above_max_cost) ? Fate::more_expensive : Fate::budget_spent;
-}
 
 std::string page_data(const std::vector<PageSource>& sources)
 {

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "firmware/linux/flight_log/shown_curves.hpp"
+
 // Flights as the page of `jink report` shows them, whichever file they come from: a run of jink-sim (run.json) or a
 // flight log of jinkd (ULog). World frame: x east, y north, z up; metres, seconds, metres per second.
 
@@ -24,25 +26,8 @@ struct BadFlight : std::runtime_error {
 
 /// Values beside PageFlight::t; kUnknown where there is none.
 using Column = std::vector<double>;
-struct Columns3 {
-    Column x, y, z;
-};
-
-/// What became of a candidate of the geometric planner's plan.
-enum class Fate {
-    chosen,
-    clear,           ///< checked: touches nothing, but costs more than the chosen one
-    contact,         ///< would touch something
-    not_flyable,     ///< more than the vehicle can fly
-    more_expensive,  ///< not checked: a cheaper one was clear, or it costs more than GEO_MAX_COST
-    budget_spent,    ///< not checked: the work budget was used up
-};
-[[nodiscard]] std::string_view name_of(Fate fate) noexcept;
-
-/// The fate of a candidate that is not evaluated. A plan evaluates costs first and then checks candidates, cheapest
-/// first, until one is clear: with a chosen one, those that have a cost were not checked because they cost as much or
-/// more. All others were left out when the budget was used up.
-[[nodiscard]] Fate fate_of_unchecked(bool has_cost, bool plan_found, bool above_max_cost) noexcept;
+using flightlog::Columns3;
+using flightlog::Fate;
 
 struct PageCandidate {
     Fate fate = Fate::budget_spent;
@@ -54,6 +39,13 @@ struct PageDecision {
     double time = 0.0;
     std::string text;
     std::vector<PageCandidate> candidates;
+};
+
+/// A path that conflicts were looked for along.
+struct PageNominal {
+    double time = 0.0;
+    bool on_route = false;  ///< as the link reports it; else from the measured motion
+    Columns3 points;
 };
 
 struct PageEvent {
@@ -103,6 +95,7 @@ struct PageFlight {
     std::vector<PageEvent> events;
     std::vector<PageDecision> decisions;
     std::vector<PageThreat> threats;
+    std::vector<PageNominal> nominal;  ///< in order of time; of a flight log
 };
 
 /// One input: its flights, in its order.

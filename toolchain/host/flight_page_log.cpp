@@ -9,10 +9,10 @@
 #include "firmware/app/takeover.hpp"
 #include "firmware/linux/flight_log/topics.hpp"
 #include "firmware/linux/flight_log/ulog_reader.hpp"
-#include "toolchain/host/candidate_curve.hpp"
 #include "toolchain/host/flight_page.hpp"
 #include "toolchain/host/log_fields.hpp"
 #include "toolchain/host/log_summary.hpp"
+#include "toolchain/host/nominal_log.hpp"
 
 namespace jink::host {
 namespace {
@@ -112,6 +112,8 @@ private:
     std::map<unsigned, std::vector<Sighting>> tracks_;
     std::map<unsigned, std::size_t> decision_of_;  // number in the log: index in flight_.decisions
     std::map<unsigned, Curve> curve_of_;
+    NominalLog nominal_;
+    double lookahead_ = 8.0;
     unsigned control_ = 0xFFFF;
 };
 
@@ -173,22 +175,14 @@ void LogFlight::note_candidate(const LogFields& topic, double time)
     PageCandidate candidate;
     const bool has_cost = topic.number("time") > 0.0;
     candidate.cost = has_cost ? topic.number("cost") : kUnknown;
-    switch (static_cast<CandidateStatus>(topic.code("status"))) {
-    case CandidateStatus::available: candidate.fate = Fate::clear; break;
-    case CandidateStatus::chosen: candidate.fate = Fate::chosen; break;
-    case CandidateStatus::hits_static:
-    case CandidateStatus::hits_moving:
-    case CandidateStatus::hits_airspace: candidate.fate = Fate::contact; break;
-    case CandidateStatus::not_flyable: candidate.fate = Fate::not_flyable; break;
-    case CandidateStatus::not_evaluated: candidate.fate = Fate::budget_spent; break;  // settle_fates
-    }
+    candidate.fate = flightlog::fate_of(static_cast<CandidateStatus>(topic.code("status")));  // settle_fates
     const unsigned family = topic.code("family");
     if (const Curve& curve = curve_of_[number]; curve.is_known && family < geometric::kFamilies.size()) {
         geometric::CandidateShape shape;
         shape.family = static_cast<geometric::Family>(family);
         shape.plane = static_cast<float>(topic.number("plane"));
         shape.offset = static_cast<float>(topic.number("offset"));
-        candidate.points = candidate_curve(shape, curve.start, curve.to);
+        candidate.points = flightlog::candidate_curve(shape, curve.start, curve.to);
     }
     decision(number, time).candidates.push_back(std::move(candidate));
 }
@@ -200,7 +194,7 @@ void LogFlight::settle_fates()
                                        [](const PageCandidate& c) { return c.fate == Fate::chosen; });
         for (PageCandidate& c : decision.candidates) {
             if (c.fate == Fate::budget_spent) {
-                c.fate = fate_of_unchecked(std::isfinite(c.cost), found, c.cost > max_cost_);
+                c.fate = flightlog::fate_of_unchecked(std::isfinite(c.cost), found, c.cost > max_cost_);
             }
         }
     }
@@ -240,6 +234,8 @@ void LogFlight::note_data(const ulog::Format& format, std::span<const std::byte>
         note_decision(fields, *time);
     } else if (format.name == "jink_candidate") {
         note_candidate(fields, *time);
+    } else if (format.name == "jink_nominal") {
+        nominal_.note(fields, *time);
     }
 }
 
@@ -329,6 +325,7 @@ void LogFlight::read()
     };
     flight_.safety_distance = parameter("JNK_HALF_XY");
     max_cost_ = std::isnan(parameter("GEO_MAX_COST")) ? max_cost_ : parameter("GEO_MAX_COST");
+    lookahead_ = std::isnan(parameter("JNK_LOOKAHEAD")) ? lookahead_ : parameter("JNK_LOOKAHEAD");
     flight_.origin = "flight log, " + log_text(log.info("sys_name")) + " " + log_text(log.info("ver_sw"));
 }
 
@@ -340,6 +337,13 @@ PageFlight LogFlight::page()
     settle_fates();
     sample(flight_);
     add_tracks(flight_);
+    flight_.nominal = nominal_.curves(
+        [&](double time) {
+            const OwnAt* const own = latest(own_, time, kTrackLife);
+            const std::array<double, 3> at = own != nullptr ? carried(*own, time) : unknown();
+            return Vec3(static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2]));
+        },
+        static_cast<float>(lookahead_));
     if (flight_.least == flight_.least) {
         flight_.events.push_back({flight_.least_time, "closest", "closest to " + flight_.least_threat});
     }

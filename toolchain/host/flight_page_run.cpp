@@ -8,7 +8,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "toolchain/host/candidate_curve.hpp"
 #include "toolchain/host/flight_page.hpp"
 
 namespace jink::host {
@@ -202,7 +201,7 @@ Fate fate_of(const Node& status, bool has_cost, bool plan_found)
     if (name != "not_evaluated") {
         status.refuse("expected a candidate's status, not '" + name + "'");
     }
-    return fate_of_unchecked(has_cost, plan_found, false);
+    return flightlog::fate_of_unchecked(has_cost, plan_found, false);
 }
 
 geometric::CandidateShape shape_of(const Node& candidate)
@@ -245,7 +244,7 @@ PageDecision read_decision(const Node& node)
         const double cost = one["cost"].number(0.0);
         candidate.cost = cost > 0.0 ? cost : kUnknown;
         candidate.fate = fate_of(one["status"], cost > 0.0, found);
-        candidate.points = candidate_curve(shape_of(one), start, to);
+        candidate.points = flightlog::candidate_curve(shape_of(one), start, to);
     }
     return decision;
 }

@@ -85,9 +85,10 @@ FlightLog::FlightLog(Output& output, const Limits& limits, const files::ParamVal
 
 void FlightLog::flush() noexcept
 {
-    output_.add(messages_.first(size_), count_);
+    output_.add(messages_.first(size_), count_, records_);
     size_ = 0;
     count_ = 0;
+    records_ = {};
 }
 
 template <class T>
@@ -149,6 +150,7 @@ void FlightLog::put_record(TimePoint now) noexcept
         put_parts(n, parts, now);
     }
     count_ = entries.overflowed() ? 0 : parts;
+    records_ = {size_, count_};
     sequence_ += count_;
     entries.clear();
 }
@@ -178,6 +180,27 @@ void FlightLog::put_tracks(app::Coprocessor& coprocessor, TimePoint now) noexcep
         put(TopicId::track,
             TrackTopic{stamp_of(now), t.id, xyz_of(t.position), xyz_of(t.velocity), t.radius, t.half_height,
                        now - t.stamp, t.instance, static_cast<std::uint8_t>(t.source), t.manned, t.cooperative});
+    }
+}
+
+/// The segments that are not flown yet.
+void FlightLog::put_path(const world::Reference& reference, std::uint8_t path, bool on_route, TimePoint now) noexcept
+{
+    const path::RouteView route = reference.route();
+    const std::size_t n = reference.valid ? route.segments().size() : 0;
+    for (std::size_t i = std::min(reference.segment, n); i < n; ++i) {
+        const path::RouteSegment& s = route.segments()[i];
+        put(TopicId::nominal,
+            NominalTopic{stamp_of(now), xyz_of(s.start), xyz_of(s.along), xyz_of(s.towards), s.radius, s.length,
+                         reference.speed, path, static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(n), on_route});
+    }
+}
+
+void FlightLog::put_nominal(const app::NominalPaths& paths, TimePoint now) noexcept
+{
+    put_path(paths.primary(), 0, paths.is_intended(), now);
+    if (const world::Reference* const other = paths.other()) {
+        put_path(*other, 1, !paths.is_intended(), now);
     }
 }
 
@@ -295,6 +318,9 @@ void FlightLog::end(const app::StepReport& report, app::Coprocessor& coprocessor
     }
     if (began.us >= tracks_due_) {
         put_tracks(coprocessor, began);
+        if (report.own_source != app::OwnSource::none) {
+            put_nominal(coprocessor.nominal_paths(), began);
+        }
         tracks_due_ = began.us + kTrackPeriod;
     }
     if (began.us >= counters_due_) {

@@ -51,7 +51,7 @@ public:
     void end_shut_down(TimePoint now) noexcept;
 
 private:
-    static constexpr std::int64_t kTrackPeriod = 200'000;      ///< [us]
+    static constexpr std::int64_t kTrackPeriod = 200'000;      ///< of tracks and nominal paths [us]
     static constexpr std::int64_t kCounterPeriod = 1'000'000;  ///< [us]
 
     /// A new message of kMaxMessage at most, to be given to `keep`.
@@ -82,6 +82,8 @@ private:
     void put_sent_texts(TimePoint now) noexcept;
     void put_own(const app::StepReport& report, const app::Coprocessor& coprocessor, TimePoint now) noexcept;
     void put_tracks(app::Coprocessor& coprocessor, TimePoint now) noexcept;
+    void put_nominal(const app::NominalPaths& paths, TimePoint now) noexcept;
+    void put_path(const world::Reference& reference, std::uint8_t path, bool on_route, TimePoint now) noexcept;
     void put_counters(const app::Coprocessor& coprocessor, TimePoint now) noexcept;
     template <class T>
     void put_counters_of(TopicId id, std::span<const Counter<T>> counters, const T& diagnostics,
@@ -100,6 +102,7 @@ private:
     std::span<std::byte> messages_;
     std::size_t size_ = 0;  ///< of them [bytes]
     std::uint32_t count_ = 0;
+    Records records_;  ///< at the head of them
     files::ParamValues parameters_;
     std::uint32_t generation_ = 0;
     bool has_generation_ = false;

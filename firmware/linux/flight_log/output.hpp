@@ -16,12 +16,19 @@ struct LogCounts {
     std::uint32_t peak = 0;            ///< greatest number of bytes in the queue
 };
 
+/// The record of the step at the head of messages: its parts.
+struct Records {
+    std::size_t bytes = 0;
+    std::uint32_t count = 0;
+};
+
 /// Takes whole messages of the data section, one after the other. Never waits.
 class Output {
 public:
     /// @param messages  whole ones, `count` of them
+    /// @param records   those at the head of them that are no use to whoever shows the flight
     /// @return false: all dropped, and counted
-    virtual bool add(std::span<const std::byte> messages, std::uint32_t count) noexcept = 0;
+    virtual bool add(std::span<const std::byte> messages, std::uint32_t count, Records records) noexcept = 0;
     /// A message that could not be composed.
     virtual void lose() noexcept = 0;
     [[nodiscard]] virtual LogCounts counts() const noexcept = 0;

@@ -7,9 +7,28 @@
 #include "firmware/flight_log/topics.hpp"
 #include "firmware/linux/flight_log/ulog.hpp"
 
-// What the log of jinkd has beside the topics: records of its ports.
+// What the log of jinkd has beside the topics of boards: nominal paths, and records of its ports.
 
 namespace jink::flightlog {
+
+/// One segment of a nominal path, from the one on that is being flown: path::RouteSegment. All segments of both paths
+/// have the same timestamp.
+struct NominalTopic {
+    static constexpr std::string_view kFormat =
+        "jink_nominal:uint64_t timestamp;float[3] start;float[3] along;float[3] towards;float radius;float length;"
+        "float speed;uint8_t path;uint8_t segment;uint8_t segments;bool on_route;";
+    std::uint64_t timestamp = 0;
+    Xyz start{};
+    Xyz along{};
+    Xyz towards{};
+    float radius = 0.0F;
+    float length = 0.0F;
+    float speed = 0.0F;
+    std::uint8_t path = 0;  ///< 0: the one that is flown in control; 1: the other one
+    std::uint8_t segment = 0;
+    std::uint8_t segments = 0;
+    bool on_route = false;  ///< as the link reports it; else the measured motion
+};
 
 /// Records of steps are cut into parts, and a part takes the smallest of these sizes in which it fits; ULog has no
 /// messages of variable size. Topic ids from TopicId::hal on.

@@ -94,7 +94,7 @@ LogCounts Writer::finish()
     return counts();
 }
 
-bool Writer::add(std::span<const std::byte> messages, std::uint32_t count) noexcept
+bool Writer::add(std::span<const std::byte> messages, std::uint32_t count, Records /*records*/) noexcept
 {
     return shared_->queue.add(messages, now_us_, count);
 }

@@ -28,7 +28,7 @@ public:
     Writer(const Writer&) = delete;
     Writer& operator=(const Writer&) = delete;
 
-    bool add(std::span<const std::byte> messages, std::uint32_t count) noexcept override;
+    bool add(std::span<const std::byte> messages, std::uint32_t count, Records records) noexcept override;
     void lose() noexcept override;
     [[nodiscard]] LogCounts counts() const noexcept override;
 

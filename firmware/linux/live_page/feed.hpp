@@ -9,15 +9,18 @@
 
 namespace jink::livepage {
 
-/// The control loop's side of the live page: copies the messages of the flight log that the page shows into a queue.
+/// The control loop's side of the live page: copies the messages of the flight log, but for records, into a queue.
 /// Never waits; what does not fit is dropped and counted. Memory: the queue.
 class Feed final : public flightlog::Output {
 public:
     /// @param queue_bytes  a power of two
     explicit Feed(std::size_t queue_bytes) : queue_(queue_bytes) {}
 
-    /// The control loop's. Messages that follow each other are kept or dropped together. O(bytes).
-    bool add(std::span<const std::byte> messages, std::uint32_t count) noexcept override;
+    /// The control loop's. The messages behind the records are kept or dropped together. O(bytes).
+    bool add(std::span<const std::byte> messages, std::uint32_t count, flightlog::Records records) noexcept override
+    {
+        return queue_.add(messages.subspan(records.bytes), 0, count - records.count);
+    }
     void lose() noexcept override {}
     [[nodiscard]] flightlog::LogCounts counts() const noexcept override
     {

@@ -69,6 +69,12 @@ std::optional<std::string> read_page(const PageOptions& options)
     return text;
 }
 
+ShownParameters shown_of(const app::ParamValues& values)
+{
+    const auto value = [&](app::Param param) { return values[static_cast<std::size_t>(param)]; };
+    return {value(app::Param::half_xy), value(app::Param::lookahead), value(app::Param::max_cost)};
+}
+
 }  // namespace
 
 struct LivePage::Shared {
@@ -80,7 +86,7 @@ struct LivePage::Shared {
     std::atomic<bool> stop{false};
     std::thread thread;
 
-    Shared(std::string page, float half_xy) : server(std::move(page)), snapshot(half_xy) {}
+    Shared(std::string page, const ShownParameters& shown) : server(std::move(page)), snapshot(shown) {}
 
     void run()
     {
@@ -107,7 +113,7 @@ struct LivePage::Shared {
     }
 };
 
-std::unique_ptr<LivePage> LivePage::open(const PageOptions& options, float half_xy)
+std::unique_ptr<LivePage> LivePage::open(const PageOptions& options, const app::ParamValues& parameters)
 {
     std::string fault;
     const auto address = host::listening_address(options.address, fault);
@@ -119,7 +125,7 @@ std::unique_ptr<LivePage> LivePage::open(const PageOptions& options, float half_
     if (!page) {
         return nullptr;
     }
-    auto shared = std::make_unique<Shared>(std::move(*page), half_xy);
+    auto shared = std::make_unique<Shared>(std::move(*page), shown_of(parameters));
     if (const int error = shared->server.listen(*address); error != 0) {
         host::complain_now("--page " + options.address + ": " + std::strerror(error));
         return nullptr;
@@ -144,9 +150,9 @@ LivePage::~LivePage()
     shared_->thread.join();
 }
 
-bool LivePage::add(std::span<const std::byte> messages, std::uint32_t count) noexcept
+bool LivePage::add(std::span<const std::byte> messages, std::uint32_t count, flightlog::Records records) noexcept
 {
-    return shared_->feed.add(messages, count);
+    return shared_->feed.add(messages, count, records);
 }
 
 flightlog::LogCounts LivePage::counts() const noexcept { return shared_->feed.counts(); }

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "firmware/app/parameters.hpp"
 #include "firmware/linux/flight_log/output.hpp"
 
 namespace jink::livepage {
@@ -28,14 +29,14 @@ public:
     static constexpr std::int64_t kPeriod = 100'000;          ///< of events [us]
 
     /// Reads the page and listens. Nothing, with a message, where that cannot be.
-    /// @param half_xy  JNK_HALF_XY at the start [m]
-    [[nodiscard]] static std::unique_ptr<LivePage> open(const PageOptions& options, float half_xy);
+    /// @param parameters  in force at the start
+    [[nodiscard]] static std::unique_ptr<LivePage> open(const PageOptions& options, const app::ParamValues& parameters);
     /// Waits for the thread, kPeriod at most.
     ~LivePage();
     LivePage(const LivePage&) = delete;
     LivePage& operator=(const LivePage&) = delete;
 
-    bool add(std::span<const std::byte> messages, std::uint32_t count) noexcept override;
+    bool add(std::span<const std::byte> messages, std::uint32_t count, flightlog::Records records) noexcept override;
     void lose() noexcept override {}
     [[nodiscard]] flightlog::LogCounts counts() const noexcept override;
 

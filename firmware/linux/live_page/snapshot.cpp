@@ -3,20 +3,18 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstdio>
 #include <cstring>
+#include <limits>
 
 #include "firmware/app/step_report.hpp"
 #include "firmware/app/takeover.hpp"
+#include "firmware/linux/live_page/json_text.hpp"
 
 namespace jink::livepage {
 namespace {
 
 using flightlog::name_of;
 using flightlog::Xyz;
-
-constexpr float kMaxShown = 1e7F;  // as toolchain/host/flight_page.hpp
 
 template <class T>
 std::optional<T> topic_of(std::span<const std::byte> content)
@@ -35,54 +33,6 @@ T number_at(std::span<const std::byte> content, std::size_t at)
     T value{};
     std::memcpy(&value, content.data() + at, sizeof value);
     return value;
-}
-
-template <class... Values>
-void add(std::string& out, const char* format, Values... values)
-{
-    std::array<char, 240> text{};
-    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): GCC 12 has no std::format
-    const int n = std::snprintf(text.data(), text.size(), format, values...);
-    out.append(text.data(), std::min(static_cast<std::size_t>(std::max(n, 0)), text.size() - 1));
-}
-
-/// Null where it is unknown.
-void add_number(std::string& out, double value)
-{
-    if (std::abs(value) <= static_cast<double>(kMaxShown)) {
-        add(out, "%.3f", value);
-    } else {
-        out += "null";
-    }
-}
-
-void add_vector(std::string& out, const Xyz& position, const Xyz& velocity = {}, double seconds = 0.0)
-{
-    for (std::size_t k = 0; k < 3; ++k) {
-        out += k == 0 ? '[' : ',';
-        add_number(out, static_cast<double>(position[k]) + seconds * static_cast<double>(velocity[k]));
-    }
-    out += ']';
-}
-
-/// In quotes. Control characters and bytes beyond ASCII become question marks.
-void add_string(std::string& out, std::string_view text)
-{
-    out += '"';
-    for (const char c : text.substr(0, text.find('\0'))) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (c == '"' || c == '\\') {
-            out += '\\';
-        }
-        out += byte >= 0x20U && byte < 0x7FU ? c : '?';
-    }
-    out += '"';
-}
-
-void add_name(std::string& out, const char* key, std::string_view name)
-{
-    add(out, ",\"%s\":", key);
-    add_string(out, name);
 }
 
 }  // namespace
@@ -145,7 +95,18 @@ void Snapshot::take_data(std::span<const std::byte> content)
             take_track(*track);
         }
     } else if (id == flightlog::TopicId::decision) {
-        ++decisions_;
+        if (const auto decision = topic_of<flightlog::DecisionTopic>(content)) {
+            ++decisions_;
+            paths_.take(*decision);
+        }
+    } else if (id == flightlog::TopicId::candidate) {
+        if (const auto candidate = topic_of<flightlog::CandidateTopic>(content)) {
+            paths_.take(*candidate);
+        }
+    } else if (id == flightlog::TopicId::nominal) {
+        if (const auto segment = topic_of<flightlog::NominalTopic>(content)) {
+            paths_.take(*segment);
+        }
     }
 }
 
@@ -157,6 +118,7 @@ void Snapshot::take_step(const flightlog::StepTopic& step)
     max_work_ = std::max(max_work_, step.work);
     max_us_ = std::max(max_us_, step.duration_us);
     news_ = true;
+    paths_.end_decision();
 }
 
 /// All tracks of a time come together.
@@ -172,29 +134,35 @@ void Snapshot::take_track(const flightlog::TrackTopic& track)
 
 void Snapshot::take_parameter(std::span<const std::byte> content)
 {
-    constexpr std::string_view kKey = "float JNK_HALF_XY";
-    if (content.size() == 1 + kKey.size() + sizeof(float) && static_cast<std::size_t>(content[0]) == kKey.size() &&
-        std::memcmp(content.data() + 1, kKey.data(), kKey.size()) == 0) {
-        half_xy_ = number_at<float>(content, 1 + kKey.size());
-    }
+    const auto take_value = [content](std::string_view key, float& value) {
+        if (content.size() == 1 + key.size() + sizeof(float) && static_cast<std::size_t>(content[0]) == key.size() &&
+            std::memcmp(content.data() + 1, key.data(), key.size()) == 0) {
+            value = number_at<float>(content, 1 + key.size());
+        }
+    };
+    take_value("float JNK_HALF_XY", shown_.half_xy);
+    take_value("float JNK_LOOKAHEAD", shown_.lookahead);
+    take_value("float GEO_MAX_COST", shown_.max_cost);
 }
 
 void Snapshot::begin_next() noexcept
 {
     texts_reported_ = texts_seen_;
+    paths_.begin_next();
     max_work_ = 0;
     max_us_ = 0;
     news_ = false;
 }
 
-std::string Snapshot::json(bool all_texts, const PageCounts& counts) const
+std::string Snapshot::json(bool is_first, const PageCounts& counts) const
 {
     std::string out = "{";
     add_step(out);
     add_own(out);
     add_conflict(out);
     add_tracks(out);
-    add_texts(out, all_texts);
+    add_paths(out, is_first);
+    add_texts(out, is_first);
     add(out, ",\"page\":{\"clients\":%u,\"slow\":%u,\"refused\":%u,\"messages_lost\":%u}}", counts.clients, counts.slow,
         counts.refused, counts.messages);
     return out;
@@ -215,7 +183,7 @@ void Snapshot::add_step(std::string& out) const
     add(out, ",\"tracks_known\":%u,\"obstacles\":%u,\"areas\":%u", unsigned{step_.tracks}, unsigned{step_.obstacles},
         unsigned{step_.areas});
     out += ",\"safety_distance\":";
-    add_number(out, static_cast<double>(half_xy_));
+    add_number(out, static_cast<double>(shown_.half_xy));
     out += ",\"command\":";
     if (step_.wants_control) {
         add_vector(out, step_.velocity);
@@ -282,6 +250,33 @@ void Snapshot::add_tracks(std::string& out) const
         separator = ",";
     }
     out += ']';
+}
+
+void Snapshot::add_paths(std::string& out, bool is_first) const
+{
+    const double now = seconds(step_.timestamp);
+    Vec3 own = Vec3::Constant(std::numeric_limits<float>::quiet_NaN());
+    if (own_ && static_cast<app::OwnSource>(step_.own_source) != app::OwnSource::none) {
+        const auto since = static_cast<float>(now - seconds(own_->timestamp));
+        for (int k = 0; k < 3; ++k) {
+            own[k] = own_->position[static_cast<std::size_t>(k)] + since * own_->velocity[static_cast<std::size_t>(k)];
+        }
+    }
+    const bool is_known = static_cast<app::OwnSource>(step_.own_source) != app::OwnSource::none &&
+                          now - seconds(paths_.nominal_time().value_or(0)) <= kTrackLife;
+    out += ",\"nominal\":";
+    if (is_known) {
+        paths_.add_nominal(out, own, shown_.lookahead);
+    } else {
+        out += "[]";
+    }
+    out += ",\"decision\":";
+    const std::optional<std::uint64_t> decided = paths_.decision_time();
+    if (decided && (is_first || paths_.has_new_decision())) {
+        paths_.add_decision(out, seconds(*decided), shown_.max_cost);
+    } else {
+        out += "null";
+    }
 }
 
 void Snapshot::add_texts(std::string& out, bool all) const

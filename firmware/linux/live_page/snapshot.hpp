@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "firmware/linux/flight_log/topics.hpp"
+#include "firmware/linux/live_page/shown_paths.hpp"
 
 namespace jink::livepage {
 
@@ -22,18 +23,25 @@ struct PageCounts {
     std::uint32_t messages = 0;  ///< of the flight log that were lost on their way to the page
 };
 
+/// Parameters that the page shows, or shows something by. Changes in the flight log follow.
+struct ShownParameters {
+    float half_xy = 0.0F;    ///< JNK_HALF_XY [m]
+    float lookahead = 0.0F;  ///< JNK_LOOKAHEAD [s]
+    float max_cost = 1.0F;   ///< GEO_MAX_COST
+};
+
 /// The newest state of a flight, from messages of the flight log.
 ///
-/// Own position and tracks are carried to the newest step with their velocities. A track without news for kTrackLife is
-/// gone: the log has each track every 0.2 s.
+/// Own position and tracks are carried to the newest step with their velocities. Tracks and nominal paths without news
+/// for kTrackLife are gone: the log has them every 0.2 s.
 class Snapshot {
 public:
     static constexpr double kTrackLife = 0.5;      ///< [s]
     static constexpr std::size_t kMaxTexts = 50;   ///< that a new client is sent
     static constexpr std::size_t kMaxTracks = 64;  ///< beyond: not shown, but counted in "tracks_known"
 
-    /// @param half_xy  JNK_HALF_XY at the start [m]
-    explicit Snapshot(float half_xy) : half_xy_(half_xy) {}
+    /// @param shown  at the start
+    explicit Snapshot(const ShownParameters& shown) : shown_(shown) {}
 
     /// Whole ULog messages, one after the other.
     void take(std::span<const std::byte> messages);
@@ -42,8 +50,9 @@ public:
     /// A step came at all.
     [[nodiscard]] bool has_step() const noexcept { return start_.has_value(); }
     /// One JSON object without line ends: docs/guides/live_page.md.
-    /// @param all_texts  the last kMaxTexts; otherwise those since the last call of `begin_next`
-    [[nodiscard]] std::string json(bool all_texts, const PageCounts& counts) const;
+    /// @param is_first  of a client: the last kMaxTexts and the newest decision; otherwise what came since the last
+    /// call of `begin_next`
+    [[nodiscard]] std::string json(bool is_first, const PageCounts& counts) const;
     /// The next period begins: its texts and its most expensive step.
     void begin_next() noexcept;
 
@@ -64,13 +73,15 @@ private:
     void add_own(std::string& out) const;
     void add_conflict(std::string& out) const;
     void add_tracks(std::string& out) const;
+    void add_paths(std::string& out, bool is_first) const;
     void add_texts(std::string& out, bool all) const;
 
-    float half_xy_;
+    ShownParameters shown_;
     std::optional<std::uint64_t> start_;
     flightlog::StepTopic step_;
     std::optional<flightlog::OwnTopic> own_;
     std::vector<flightlog::TrackTopic> tracks_;
+    ShownPaths paths_;
     std::deque<Text> texts_;
     std::uint64_t texts_seen_ = 0;
     std::uint64_t texts_reported_ = 0;

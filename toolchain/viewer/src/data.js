@@ -24,6 +24,16 @@ export function decode(column) {
 const decode3 = (columns) => columns.map(decode);
 const length3 = (columns) => columns[0].map((x, i) => Math.hypot(x, columns[1][i], columns[2][i]));
 
+/** Columns of nominal paths as {t, paths}: the paths of each time together. */
+function openNominal({ t, on_route, sizes, points }) {
+  const times = decode(t), kinds = decode(on_route), counts = decode(sizes), columns = decode3(points), nominal = { t: [], paths: [] };
+  for (let i = 0, first = 0; i < times.length; first += counts[i++]) {
+    if (i === 0 || times[i] !== times[i - 1]) { nominal.t.push(times[i]); nominal.paths.push([]); }
+    nominal.paths[nominal.paths.length - 1].push({ kind: kinds[i] ? "route" : "motion", points: columns.map((c) => c.slice(first, first + counts[i])) });
+  }
+  return nominal;
+}
+
 /** Decodes a flight in place, once. Vectors are [x, y, z], each an array; speeds are lengths of vectors. */
 export function open(flight) {
   if (flight.isOpen) return flight;
@@ -36,6 +46,7 @@ export function open(flight) {
   for (const decision of flight.decisions) {
     for (const candidate of decision.candidates) candidate.points = candidate.points && decode3(candidate.points);
   }
+  flight.nominal = openNominal(flight.nominal);
   flight.isOpen = true;
   return flight;
 }
@@ -80,6 +91,15 @@ export function controlSpans(flight) {
   const end = flight.t.length ? flight.t[flight.t.length - 1] : 0;
   return flight.phases.map((p, i) => [p.from, i + 1 < flight.phases.length ? flight.phases[i + 1].from : end, p.in_control])
     .filter((span) => span[2] && span[1] > span[0]);
+}
+
+/** How long nominal paths are shown without news: they come every 0.2 s [s]. */
+const NOMINAL_LIFE = 0.5;
+
+/** The paths that conflicts were looked for along at a time, or null. */
+export function nominalAt(flight, time) {
+  const i = indexAt(flight.nominal.t, time);
+  return i >= 0 && time <= flight.nominal.t[i] + NOMINAL_LIFE + 1e-6 ? flight.nominal.paths[i] : null;
 }
 
 /** How long a decision's candidates are shown after it, unless another one follows [s]. */

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The live page of jinkd: the state of the flight as it comes, and how old it is.
 import { Charts } from "./charts.js";
+import { decisionAt } from "./data.js";
 import { LiveFlight, separationTo } from "./live_flight.js";
 import { Replay } from "./replay.js";
-import { COLOURS, key, make, measure } from "./words.js";
+import { COLOURS, candidateKeys, decisionText, key, make, measure, nominalKeys } from "./words.js";
 
 const at = (id) => document.getElementById(id);
 /** Without an event for longer the page says that it is old [ms]. */
@@ -42,7 +43,7 @@ class LiveReplay extends Replay {
 
 const flight = new LiveFlight();
 const charts = new Charts(at("charts"), () => {});
-let replay = null, arrived = -Infinity, charted = 0, built = 0, events = 0, state = null;
+let replay = null, arrived = -Infinity, charted = 0, built = 0, events = 0, state = null, shownDecision = null;
 try {
   replay = new LiveReplay(at("canvas"));
 } catch (error) {
@@ -66,7 +67,7 @@ function showReadout() {
   const rows = [["time", measure(state.time, "s", 1)], ["separation", measure(flight.separation[i], "m")], ["speed", measure(flight.speed[i], "m/s", 1)],
     ["commanded", measure(flight.commanded[i], "m/s", 1)], ["height", measure(flight.own[2][i], "m", 1)], ["age of own state", measure(state.own && state.own.age, "s")],
     ["guidance", state.guidance], ["manoeuvre", state.manoeuvre], ["conflict", conflict ? `${conflict.kind} ${conflict.id} in ${measure(conflict.time, "s", 1)}` : "none"],
-    ["work units", measure(state.work, "", 0)], ["longest step", measure(state.longest_step_ms, "ms")], ["deadlines missed", measure(state.deadlines_missed, "", 0)],
+    ["nominal path", state.nominal.length ? state.nominal[0].kind : "none"], ["work units", measure(state.work, "", 0)], ["longest step", measure(state.longest_step_ms, "ms")], ["deadlines missed", measure(state.deadlines_missed, "", 0)],
     ["decisions", measure(state.decisions, "", 0)], ["obstacles", measure(state.obstacles, "", 0)], ["closed areas", measure(state.areas, "", 0)],
     ["messages lost", measure(state.page.messages_lost, "", 0)]];
   at("readout").replaceChildren(...rows.map(([name, value]) => make("div", {}, make("dt", { textContent: name }), make("dd", { textContent: value }))));
@@ -81,12 +82,20 @@ function showTexts() {
     make("li", { className: event.level <= 3 ? "bad" : "" }, make("span", { textContent: measure(event.time, "s", 1) }), make("span", { textContent: event.text }))));
 }
 
+function showDecision(time) {
+  const decision = decisionAt(flight, time);
+  if (decision === shownDecision) return;
+  shownDecision = decision;
+  at("legend").replaceChildren(...candidateKeys(decision));
+  at("decision").textContent = decisionText(decision);
+}
+
 function nameSeries() {
   const keys = [key(COLOURS.own, "flown"), key(COLOURS.command, "commanded", { dashed: true })];
   if (flight.safety_distance !== null) keys.push(key(COLOURS.limit, `${measure(flight.safety_distance, "m")}: half extent of the safety box, JNK_HALF_XY`, { dashed: true }));
   at("series").replaceChildren(...keys, key(COLOURS.control, "jink has control", { width: 8 }), key(COLOURS.decision, "decision", { width: 6 }));
   at("paths").replaceChildren(...(replay ? [key(COLOURS.own, "flown under jink\u2019s control", { width: 4 }), key(COLOURS.mission, "flown by the autopilot", { width: 2.5 }),
-    key(COLOURS.threat, "tracks")] : []));
+    key(COLOURS.threat, "tracks"), ...nominalKeys()] : []));
 }
 
 function take(json) {
@@ -109,6 +118,7 @@ function take(json) {
   if (flight.safety_distance !== before) nameSeries();
   showConnection();
   showReadout();
+  showDecision(time);
 }
 
 charts.window = Number(at("window").value);
@@ -116,6 +126,7 @@ at("window").onchange = () => { charts.window = Number(at("window").value); };
 if (replay) {
   replay.follows = true;
   for (const button of at("views").children) button.onclick = () => { if (replay.flight) replay.view(button.dataset.view); };
+  at("show-candidates").onchange = () => { replay.showsCandidates = at("show-candidates").checked; replay.drawnDecision = undefined; if (replay.flight) replay.setTime(replay.time); };
   at("follow").onchange = () => { if (replay.flight) replay.follow(at("follow").checked); else replay.follows = at("follow").checked; };
 }
 nameSeries();
@@ -123,4 +134,4 @@ setInterval(showConnection, 250);
 const source = new EventSource("events");
 source.onmessage = (event) => take(JSON.parse(event.data));
 /** For tests. */
-window.jinkLive = { replay, charts, flight, source, count: () => events, state: () => state };
+window.jinkLive = { replay, charts, flight, source, showDecision, count: () => events, state: () => state };

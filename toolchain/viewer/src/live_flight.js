@@ -21,7 +21,7 @@ export class LiveFlight {
     const columns = () => [[], [], []];
     Object.assign(this, { name: "live", t: [], own: columns(), velocity: columns(), command: columns(), separation: [], work: [], speed: [],
       commanded: [], phases: [], events: [], decisions: [], threats: [], mission: columns(), safety_distance: null, least: null,
-      least_time: NaN, step: -1, decided: null, lastText: -1 });
+      least_time: NaN, step: -1, lastDecision: null, lastText: -1, nominal: { t: [], paths: [] } });
   }
 
   /** Takes one event of jinkd. */
@@ -41,12 +41,21 @@ export class LiveFlight {
     this.takeTracks(state.tracks);
     const last = this.phases[this.phases.length - 1];
     if (!last || last.mode !== state.control) this.phases.push({ from: state.time, mode: state.control, in_control: state.in_control });
-    if (this.decided !== null && state.decisions > this.decided) this.decisions.push({ time: state.time, text: "", candidates: [] });
-    this.decided = state.decisions;
+    this.nominal = { t: [state.time], paths: [state.nominal] };
     this.takeTexts(state);
+    this.takeDecision(state.decision);
     if (this.t.length > KEPT) this.forget();
     const known = this.separation.filter((d) => d === d);
     this.least = known.length ? Math.min(...known) : null;
+  }
+
+  /** A new hearer is sent the newest one, and that since the last event twice. Of older ones the time alone is kept. */
+  takeDecision(decision) {
+    if (!decision || decision.number === this.lastDecision) return;
+    this.lastDecision = decision.number;
+    for (const older of this.decisions) older.candidates = [];
+    const said = this.events.find((e) => e.time === decision.time && e.text.includes(", new manoeuvre"));
+    this.decisions.push({ ...decision, text: said ? said.text : "" });
   }
 
   takeTracks(tracks) {

@@ -4,7 +4,7 @@ import { Charts } from "./charts.js";
 import { Replay } from "./replay.js";
 import { decisionAt, indexAt, open, phaseAt } from "./data.js";
 import { outcomes, cards, table } from "./summary.js";
-import { COLOURS, FATES, key, make, measure } from "./words.js";
+import { COLOURS, candidateKeys, decisionText, key, make, measure, nominalKeys } from "./words.js";
 
 const at = (id) => document.getElementById(id);
 const sources = JSON.parse(at("data").textContent);
@@ -68,6 +68,7 @@ function nameSeries() {
 function namePaths() {
   const keys = [key(COLOURS.own, "flown under jink\u2019s control", { width: 4 }), key(COLOURS.mission, "flown by the autopilot", { width: 2.5 })];
   if (flight.mission[0].length > 1) keys.push(key(COLOURS.mission, "mission", { dashed: true }));
+  if (flight.nominal.t.length) keys.push(...nominalKeys());
   if (flight.threats.length) keys.push(key(COLOURS.threat, "threats"));
   if (other) keys.push(key(COLOURS.other, `flown, ${other.name}`, { width: 2.5 }));
   at("paths").replaceChildren(...(replay ? keys : []));
@@ -118,16 +119,8 @@ function showReadout() {
 
 function showDecision() {
   const decision = decisionAt(flight, time);
-  const counts = {};
-  for (const candidate of decision ? decision.candidates : []) counts[candidate.fate] = (counts[candidate.fate] || 0) + 1;
-  at("legend").replaceChildren(...Object.keys(FATES).filter((fate) => counts[fate]).map((fate) => {
-    const entry = key(FATES[fate].colour, `${counts[fate]} ${FATES[fate].text}`, FATES[fate]);
-    entry.dataset.fate = fate;
-    entry.dataset.count = counts[fate];
-    return entry;
-  }));
-  at("decision").textContent = !decision ? "" : decision.candidates.length
-    ? `Candidates of the geometric planner at ${measure(decision.time, "s", 1)}. ${decision.text}` : `Decision at ${measure(decision.time, "s", 1)}: ${decision.text}`;
+  at("legend").replaceChildren(...candidateKeys(decision));
+  at("decision").textContent = decisionText(decision);
 }
 
 function toDecision(direction) {

@@ -5,8 +5,8 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Line2 } from "three/addons/lines/Line2.js";
 import { LineGeometry } from "three/addons/lines/LineGeometry.js";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
-import { COLOURS, FATES } from "./words.js";
-import { controlSpans, decisionAt, indexAt, placeOf, pointAt } from "./data.js";
+import { COLOURS, FATES, NOMINAL } from "./words.js";
+import { controlSpans, decisionAt, indexAt, nominalAt, placeOf, pointAt } from "./data.js";
 
 // Materials are kept: a shader whose last material is disposed of would be compiled again for the next flight.
 const materials = new Map();
@@ -48,6 +48,9 @@ function bodyOf(threat) {
   return new THREE.SphereGeometry(threat.radius, 28, 18);
 }
 
+/** Columns as points. */
+const pointsOf = ([xs, ys, zs]) => Array.from(xs, (x, i) => [x, ys[i], zs[i]]);
+
 function empty(group) {
   group.traverse((object) => { if (object.geometry) object.geometry.dispose(); });
   group.clear();
@@ -74,7 +77,8 @@ export class Replay {
     this.fixed = new THREE.Group();
     this.bodies = new THREE.Group();
     this.candidates = new THREE.Group();
-    this.scene.add(this.ground, this.fixed, this.bodies, this.candidates);
+    this.nominal = new THREE.Group();
+    this.scene.add(this.ground, this.fixed, this.bodies, this.candidates, this.nominal);
     this.showsCandidates = true;
     this.follows = false;
     this.time = 0;
@@ -127,15 +131,14 @@ export class Replay {
   }
 
   show(flight, other, shift) {
-    Object.assign(this, { flight, other, shift, drawnDecision: undefined });
+    Object.assign(this, { flight, other, shift, drawnDecision: undefined, drawnNominal: undefined });
     this.frame();
     empty(this.fixed);
     empty(this.bodies);
     this.ground.scale.setScalar(this.size * 4);
     this.ground.position.copy(this.toScene([this.middle[0], this.middle[1], Math.min(0, this.lowest)]));
     if (flight.mission[0].length > 1) {
-      const points = Array.from(flight.mission[0], (x, i) => [x, flight.mission[1][i], flight.mission[2][i]]);
-      this.fixed.add(this.line(points, COLOURS.mission, 1.5, { dashed: true }));
+      this.fixed.add(this.line(pointsOf(flight.mission), COLOURS.mission, 1.5, { dashed: true }));
     }
     const last = flight.t.length - 1;
     this.track(this.fixed, flight.own, 0, last, COLOURS.mission, 2.5);
@@ -208,6 +211,8 @@ export class Replay {
     }
     const decision = this.showsCandidates ? decisionAt(this.flight, time) : null;
     if (decision !== this.drawnDecision) this.drawCandidates(decision);
+    const nominal = nominalAt(this.flight, time);
+    if (nominal !== this.drawnNominal) this.drawNominal(nominal);
     this.request();
   }
 
@@ -232,10 +237,22 @@ export class Replay {
     for (const candidate of decision ? decision.candidates : []) {
       if (!candidate.points || !candidate.points[0].length) continue;
       const { colour, width, dashed } = FATES[candidate.fate];
-      const points = Array.from(candidate.points[0], (x, i) => [x, candidate.points[1][i], candidate.points[2][i]]);
-      const line = this.line(points, colour, width, { dashed, order: candidate.fate === "chosen" ? 4 : 3 });
+      const line = this.line(pointsOf(candidate.points), colour, width, { dashed, order: candidate.fate === "chosen" ? 4 : 3 });
       line.userData.fate = candidate.fate;
       this.candidates.add(line);
+    }
+  }
+
+  /** `paths`: what conflicts are looked for along, or null. One that stays where it is has no line. */
+  drawNominal(paths) {
+    this.drawnNominal = paths;
+    empty(this.nominal);
+    for (const { kind, points } of paths || []) {
+      if (points.every((column) => column.every((value) => value === column[0]))) continue;
+      const { width, dashed } = NOMINAL[kind];
+      const line = this.line(pointsOf(points), COLOURS.nominal, width, { dashed, order: 3 });
+      line.userData.kind = kind;
+      this.nominal.add(line);
     }
   }
 }

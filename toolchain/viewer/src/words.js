@@ -2,7 +2,7 @@
 // Colours and words of the page.
 
 export const COLOURS = { own: "#1d5fa8", other: "#a8327d", command: "#2b2f36", mission: "#8a93a0", threat: "#e07b1a", limit: "#c62828",
-  alone: "#b06a12", control: "#d7ecd9", decision: "#1e9e3e", grid: "#d9dde3" };
+  nominal: "#0f9aa0", alone: "#b06a12", control: "#d7ecd9", decision: "#1e9e3e", grid: "#d9dde3" };
 
 // Purple, light blue and green as in Pinheiro 4.5.1; grey and dashed: never checked.
 export const FATES = {
@@ -23,6 +23,12 @@ export const OUTCOMES = {
   failed: ["bad", "a rule of the link or of the airspace was broken"],
 };
 
+/** Of nominal paths. */
+export const NOMINAL = {
+  route: { width: 2.5, text: "nominal path, as the link reports it" },
+  motion: { width: 2.5, dashed: true, text: "nominal path, from the measured motion" },
+};
+
 const minus = (text) => text.replace("-", "\u2212");
 /** A number with its unit; a dash where it is unknown. */
 export const measure = (value, unit, digits = 2) => value === null || value === undefined || Number.isNaN(value) ? "\u2013"
@@ -33,6 +39,28 @@ export function make(tag, attributes = {}, ...children) {
   const element = Object.assign(document.createElement(tag), attributes);
   element.append(...children);
   return element;
+}
+
+export const nominalKeys = () => Object.values(NOMINAL).map((n) => key(COLOURS.nominal, n.text, n));
+
+/** The entries of a legend for a decision's candidates, with their numbers. */
+export function candidateKeys(decision) {
+  const counts = {};
+  for (const candidate of decision ? decision.candidates : []) counts[candidate.fate] = (counts[candidate.fate] || 0) + 1;
+  return Object.keys(FATES).filter((fate) => counts[fate]).map((fate) => {
+    const entry = key(FATES[fate].colour, `${counts[fate]} ${FATES[fate].text}`, FATES[fate]);
+    entry.dataset.fate = fate;
+    entry.dataset.count = counts[fate];
+    return entry;
+  });
+}
+
+/** The line under that legend. */
+export function decisionText(decision) {
+  if (!decision) return "";
+  const when = measure(decision.time, "s", 1), shown = decision.candidates.length, known = decision.candidates_known || shown;
+  return !shown ? `Decision at ${when}: ${decision.text}`
+    : `Candidates of the geometric planner at ${when}${known > shown ? ` (${shown} of ${known})` : ""}. ${decision.text}`;
 }
 
 const SVG = "http://www.w3.org/2000/svg";
