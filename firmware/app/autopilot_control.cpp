@@ -86,12 +86,16 @@ void AutopilotControl::send_setpoint(const ControlInput& input, const Configurat
 {
     const Seconds period = setpoint_period(c);
     const Vec3& own = input.own.velocity;
-    // Until the autopilot follows us, the stream says what it does anyway.
-    const bool leads = takeover_.follows() && (followed || report.guidance.wants_control);
+    // Until the autopilot follows us, the stream says what it does anyway. A fallback does not wait for the answer.
+    const bool follows = takeover_.follows() && (followed || report.guidance.wants_control);
+    const bool flees =
+        takeover_.control() == Control::requesting && report.guidance.wants_control && report.guidance.by == 0;
+    const bool leads = follows || flees;
     const Vec3 wanted = leads ? report.guidance.velocity : own;
     const Vec3 velocity = input.autopilot.report().fixed_wing ? wing_course(wanted, own, last_velocity_) : wanted;
     // What is decided anew does not wait for its turn: a tenth of a second is half a metre at cruise speed.
-    const bool anew = leads && (!followed || (velocity - last_velocity_).squaredNorm() > kNewCommand * kNewCommand);
+    const bool anew =
+        leads && ((follows && !followed) || (velocity - last_velocity_).squaredNorm() > kNewCommand * kNewCommand);
     if (period <= 0.0F || (!anew && input.now - last_setpoint_ < period - 0.5F * kTick)) {
         return;
     }

@@ -81,6 +81,62 @@ TEST(StepControl, TheStreamNeverSaysAVelocityThatNobodyWants)
     }
 }
 
+/// An intruder so near that no method has an answer.
+void meet_late(StepFlight& f)
+{
+    f.until([](const StepReport&) { return false; }, 60);
+    f.intruder = f.position + Vec3(0.3F, 10.0F, 0.0F);
+    f.intruder_velocity = Vec3(0.0F, -5.0F, 0.0F);
+}
+
+bool flees(const StepReport& r) { return r.guidance.wants_control && r.guidance.by == 0; }
+
+/// Between the grant and the HEARTBEAT that shows it, the autopilot follows the stream already.
+TEST(StepControl, AFallbackIsStreamedFromTheRequestOn)
+{
+    StepFlight f;
+    f.answers = false;
+    meet_late(f);
+    int announced = 0;
+    int requested = 0;
+    Vec3 before = Vec3::Zero();
+    ASSERT_TRUE(f.until([&](const StepReport& r) {
+        if (r.setpoint_sent && r.control == Control::announcing) {
+            ++announced;
+            before = f.velocity;
+            EXPECT_EQ(f.wire.velocities.back(), f.coprocessor.own().velocity);
+        }
+        if (r.setpoint_sent && r.control == Control::requesting) {
+            requested += flees(r) ? 1 : 0;
+            EXPECT_EQ(f.wire.velocities.back(), flees(r) ? r.guidance.velocity : f.coprocessor.own().velocity);
+        }
+        return r.control == Control::ours;
+    }));
+    EXPECT_GT(announced, 0);
+    EXPECT_GT(requested, 0);
+    EXPECT_GT((f.velocity - before).norm(), 0.5F) << "before it is confirmed";
+    EXPECT_TRUE(f.last.setpoint_sent) << "set-points before the grant may have been ignored";
+}
+
+/// A refused request, and then no conflict any more: nothing is left to flee from.
+TEST(StepControl, TheStreamSaysTheOwnMotionWhereARequestIsNoLongerWanted)
+{
+    StepFlight f;
+    f.obeys = f.answers = false;
+    meet_late(f);
+    ASSERT_TRUE(f.until([](const StepReport& r) { return r.control == Control::requesting; }));
+    f.intruder_velocity = Vec3(60.0F, 0.0F, 0.0F);
+    int unwanted = 0;
+    for (int i = 0; i < 45; ++i) {
+        f.tick();
+        if (f.last.setpoint_sent && f.last.control == Control::requesting && !f.last.guidance.wants_control) {
+            ++unwanted;
+            EXPECT_EQ(f.wire.velocities.back(), f.coprocessor.own().velocity);
+        }
+    }
+    EXPECT_GT(unwanted, 0);
+}
+
 TEST(StepControl, TheStreamKeepsItsRate)
 {
     StepFlight f({{Param::rate, 10.0F}});
