@@ -19,8 +19,8 @@ namespace jink::livepage {
 class Server {
 public:
     static constexpr std::size_t kMaxClients = 8;
-    /// Of one client's events that are not yet sent: beyond, it is too slow. Two seconds of events with all tracks, or two
-    /// of the largest decisions.
+    /// Of one client's events that are not yet sent: beyond, it is too slow. Two seconds of events with all tracks, or
+    /// two of the largest decisions.
     static constexpr std::size_t kMaxWaiting = 256U * 1024U;
     static constexpr std::int64_t kHeadTime = 5'000'000;     ///< for a request's head [us]
     static constexpr std::int64_t kAnswerTime = 20'000'000;  ///< for an answer [us]
