@@ -12,6 +12,7 @@
 namespace {
 
 using namespace jink::host;
+namespace flightlog = jink::flightlog;
 
 std::vector<unsigned> bytes_of(const std::string& base64)
 {
@@ -112,11 +113,12 @@ TEST(FlightPageData, TextsCannotLeaveTheirElement)
 
 TEST(FlightPageData, UncheckedCandidates)
 {
-    EXPECT_EQ(fate_of_unchecked(true, true, false), Fate::more_expensive);
-    EXPECT_EQ(fate_of_unchecked(true, false, true), Fate::more_expensive) << "above GEO_MAX_COST";
-    EXPECT_EQ(fate_of_unchecked(true, false, false), Fate::budget_spent);
-    EXPECT_EQ(fate_of_unchecked(false, true, false), Fate::budget_spent) << "its cost was never computed";
-    EXPECT_EQ(fate_of_unchecked(false, false, false), Fate::budget_spent);
+    EXPECT_EQ(flightlog::fate_of_unchecked(true, true, false), flightlog::Fate::more_expensive);
+    EXPECT_EQ(flightlog::fate_of_unchecked(true, false, true), flightlog::Fate::more_expensive) << "above GEO_MAX_COST";
+    EXPECT_EQ(flightlog::fate_of_unchecked(true, false, false), flightlog::Fate::budget_spent);
+    EXPECT_EQ(flightlog::fate_of_unchecked(false, true, false), flightlog::Fate::budget_spent)
+        << "its cost was never computed";
+    EXPECT_EQ(flightlog::fate_of_unchecked(false, false, false), flightlog::Fate::budget_spent);
 }
 
 }  // namespace
