@@ -81,17 +81,16 @@ Seconds AutopilotControl::setpoint_period(const Configuration& c) const noexcept
 }
 
 /// Neither autopilot flies a set-point from before its external mode: what is wanted is said at once when it begins.
-void AutopilotControl::send_setpoint(const ControlInput& input, const Configuration& c, bool followed,
+void AutopilotControl::send_setpoint(const ControlInput& input, Seconds period, bool followed,
                                      StepReport& report) noexcept
 {
-    const Seconds period = setpoint_period(c);
     const Vec3& own = input.own.velocity;
     // Until the autopilot follows us, the stream says what it does anyway. A fallback does not wait for the answer.
     const bool follows = takeover_.follows() && (followed || report.guidance.wants_control);
     const bool flees =
         takeover_.control() == Control::requesting && report.guidance.wants_control && report.guidance.by == 0;
     const bool leads = follows || flees;
-    const Vec3 wanted = leads ? report.guidance.velocity : own;
+    const Vec3& wanted = leads ? report.guidance.velocity : own;
     const Vec3 velocity = input.autopilot.report().fixed_wing ? wing_course(wanted, own, last_velocity_) : wanted;
     // What is decided anew does not wait for its turn: a tenth of a second is half a metre at cruise speed.
     const bool anew =
@@ -133,9 +132,8 @@ void AutopilotControl::request(const TakeoverOutput& output, TimePoint now) noex
 }
 
 /// The line may be open and take nothing: what is queued must not go out when it is no longer true.
-void AutopilotControl::drop_stale(const Configuration& c, TimePoint now) noexcept
+void AutopilotControl::drop_stale(Seconds period, TimePoint now) noexcept
 {
-    const Seconds period = setpoint_period(c);
     if (period <= 0.0F || now - last_setpoint_ >= period) {
         link_.drop_setpoint();
     }
@@ -200,8 +198,9 @@ TakeoverEvent AutopilotControl::update(const ControlInput& input, const Configur
     const bool as_asked = way_blocked_ && output.event == TakeoverEvent::overruled &&
                           input.autopilot.report().mode == link::FlightMode::hold;
     announce(as_asked ? TakeoverEvent::none : output.event, outbox);
-    send_setpoint(input, c, followed, report);
-    drop_stale(c, input.now);
+    const Seconds period = setpoint_period(c);
+    send_setpoint(input, period, followed, report);
+    drop_stale(period, input.now);
     report.control = takeover_.control();
     return output.event;
 }

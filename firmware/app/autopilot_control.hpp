@@ -58,8 +58,8 @@ private:
     void note_block(const AutopilotState& autopilot, const avoid::Guidance& guidance, Outbox& outbox) noexcept;
     void request(const TakeoverOutput& output, TimePoint now) noexcept;
     [[nodiscard]] Seconds setpoint_period(const Configuration& c) const noexcept;
-    void send_setpoint(const ControlInput& input, const Configuration& c, bool followed, StepReport& report) noexcept;
-    void drop_stale(const Configuration& c, TimePoint now) noexcept;
+    void send_setpoint(const ControlInput& input, Seconds period, bool followed, StepReport& report) noexcept;
+    void drop_stale(Seconds period, TimePoint now) noexcept;
 
     link::Link& link_;
     Diagnostics& counts_;

@@ -82,7 +82,8 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     {"JNK_WELL_HEIGHT", 76, 1, 1000, false, "the same above and below [m]; ASTM F3442: 76"},
 }};
 
-Configuration build(const std::array<float, kParamCount>& v, [[maybe_unused]] const reach::VehicleSets* sets) noexcept
+[[gnu::cold]] Configuration build(const std::array<float, kParamCount>& v,
+                                  [[maybe_unused]] const reach::VehicleSets* sets) noexcept
 {
     const auto at = [&](Param p) { return v[static_cast<std::size_t>(p)]; };
     const auto whole = [&](Param p) { return static_cast<std::uint32_t>(at(p)); };
