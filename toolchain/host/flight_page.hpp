@@ -28,6 +28,7 @@ struct BadFlight : std::runtime_error {
 using Column = std::vector<double>;
 using flightlog::Columns3;
 using flightlog::Fate;
+using flightlog::fate_of_unchecked;
 
 struct PageCandidate {
     Fate fate = Fate::budget_spent;

@@ -194,7 +194,7 @@ void LogFlight::settle_fates()
                                        [](const PageCandidate& c) { return c.fate == Fate::chosen; });
         for (PageCandidate& c : decision.candidates) {
             if (c.fate == Fate::budget_spent) {
-                c.fate = flightlog::fate_of_unchecked(std::isfinite(c.cost), found, c.cost > max_cost_);
+                c.fate = fate_of_unchecked(std::isfinite(c.cost), found, c.cost > max_cost_);
             }
         }
     }

@@ -201,7 +201,7 @@ Fate fate_of(const Node& status, bool has_cost, bool plan_found)
     if (name != "not_evaluated") {
         status.refuse("expected a candidate's status, not '" + name + "'");
     }
-    return flightlog::fate_of_unchecked(has_cost, plan_found, false);
+    return fate_of_unchecked(has_cost, plan_found, false);
 }
 
 geometric::CandidateShape shape_of(const Node& candidate)
