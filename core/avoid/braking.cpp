@@ -114,7 +114,7 @@ bool StateMachine::stays_given_up(Tick& tick) noexcept
     return true;
 }
 
-/// Gives up where static threats on the nominal path have kept the vehicle from any progress for too long.
+/// Gives up where static threats on the nominal path have kept the vehicle from any progress for too long, braking.
 void StateMachine::give_up_when_blocked(Tick& tick) noexcept
 {
     const bool moves = tick.out.conflict && is_traffic(*tick.out.conflict);
@@ -123,6 +123,10 @@ void StateMachine::give_up_when_blocked(Tick& tick) noexcept
         block_at_ = at;
         block_since_ = tick.s.now;
         return;
+    }
+    // Braking alone counts: a path along the block may be flown in several manoeuvres, with stops between them.
+    if (phase_ != Phase::braking) {
+        block_since_.us += tick.s.now.us - last_update_.us;
     }
     const bool stands =
         tick.s.own.velocity.norm() < kStanding && tick.s.limits.kind == vehicle::VehicleKind::multirotor;

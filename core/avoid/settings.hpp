@@ -110,8 +110,8 @@ struct Settings {
     /// Control is kept at least this long, on the nominal path once that is clear: a conflict that comes and goes makes
     /// one take-over, not several, 0..60 [s].
     Seconds least_control = 5.0F;
-    /// A vehicle that static threats block for this long, without getting anywhere, gives up control and asks for a
-    /// hold; 0: never [s].
+    /// A vehicle that static threats block, without getting anywhere, gives up control and asks for a hold after this
+    /// much time of braking; 0: never [s].
     Seconds patience = 20.0F;
     std::uint32_t plan_budget = 23000;  ///< of one plan, whatever updates it takes [work units]
     // Of `plan_budget` kept back for each method that is asked after another one [work units].

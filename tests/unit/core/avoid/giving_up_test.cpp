@@ -118,6 +118,27 @@ TEST(GivingUp, CountsFromTheTakeOver)
     EXPECT_TRUE(w.wait(0.5F, 0.5F).blocked);
 }
 
+/// A path along a block that is flown in parts, with stops between them, may take longer than the patience.
+TEST(GivingUp, DoesNotCountTheTimeOfManoeuvres)
+{
+    AtAWall w(giving_up());
+    bool finds = false;
+    w.method = {[&](const Situation& s, WorkBudget&, Manoeuvre& out) {
+        out = along(s, {s.own.position, s.own.position - Vec3(100, 0, 0)}, Vec3(0, 0, 0));
+        return finds ? PlanStatus::found : PlanStatus::none_available;
+    }};
+    static_cast<void>(w.update(false));
+    ASSERT_EQ(w.wait(12.0F, 0.5F).state, State::braking);
+    finds = true;
+    ASSERT_EQ(w.wait(10.0F, 0.5F).state, State::avoiding);
+    finds = false;
+    w.f.scene.obstacle(geometry::make_box(Vec3(53, 0, 30), Vec3(0.8F, 200, 200)));
+    const Guidance before = w.wait(7.5F, 0.5F);
+    EXPECT_EQ(before.state, State::braking);
+    EXPECT_FALSE(before.blocked);
+    EXPECT_TRUE(w.wait(0.5F, 0.5F).blocked);
+}
+
 TEST(GivingUp, CountsAnewAfterTraffic)
 {
     AtAWall w(giving_up());
