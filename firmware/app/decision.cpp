@@ -7,9 +7,10 @@
 namespace jink::app {
 namespace {
 
-/// What a plan by reach sets takes more where they see by a scan, at most; that is for computers that have LiDARs.
-constexpr auto kScanUnits =
-    static_cast<std::uint32_t>(units::kReachScanCell * (kMaxReachCells + reach::LidarScan::kCells));
+/// What a plan by reach sets takes more where they see by a scan, at most; that is for computers that have LiDARs. A
+/// vehicle that hardly moves lays the scan over each of its courses.
+constexpr auto kScanUnits = static_cast<std::uint32_t>(reach::Planner::kHeadings * units::kReachScanCell *
+                                                       (kMaxReachCells + reach::LidarScan::kCells));
 
 }  // namespace
 

@@ -116,6 +116,19 @@ TEST(Phases, AWallSeenByAScanIsPassedInAllOfThem)
     }
 }
 
+/// A house across a street full of obstacles, with free gaps beside it: a plan for a vehicle that stands in front of it
+/// is not cut off by its work, and a way along it in parts not by the patience.
+TEST(Phases, AHouseAcrossAStreetIsPassed)
+{
+    const Scenario street = scenario("urban_canyon");
+    std::uint64_t seed = 22;
+    for (const Record& record : fly_phases(street, seed, 9, {})) {
+        EXPECT_TRUE(unmet(street, record).empty()) << "seed " << seed;
+        EXPECT_EQ(record.final_mode, Mode::mission) << "seed " << seed;
+        ++seed;
+    }
+}
+
 /// A co-processor delayed beyond the age limit of the own state gives up control and reports this: the autopilot is
 /// requested to hold, and holds until the mission is resumed (docs/guides/take_over.md).
 TEST(Phases, HeldUpBeyondTheAgeOfOwnStateItDropsControlAndHolds)
