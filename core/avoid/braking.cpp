@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fallback, backing off from what blocks the nominal path, and giving up in front of it.
+// The fallback, backing off from what blocks the nominal path, and giving up in front of it. What is cold here is rare,
+// and small in flash rather than fast.
 #include <algorithm>
 
 #include "core/avoid/tick.hpp"
@@ -21,7 +22,8 @@ constexpr std::uint32_t kAfterwardsPerTrack = 100;
 
 /// Whether traffic comes too near to a vehicle that stays here. The main conflict does not say: what blocks the nominal
 /// path comes first there. Threats that were never collected count as traffic.
-bool traffic_comes(const world::Situation& s, const Settings& settings, WorkBudget& budget) noexcept
+[[gnu::noinline, gnu::cold]] bool traffic_comes(const world::Situation& s, const Settings& settings,
+                                                WorkBudget& budget) noexcept
 {
     if (s.threats.data() == nullptr) {
         return true;
@@ -59,7 +61,7 @@ void StateMachine::fall_back(Tick& tick) noexcept
 }
 
 /// Standing in front of something that stays: backs off, so that a plan around it has space.
-void StateMachine::back_off(Tick& tick) noexcept
+[[gnu::cold]] void StateMachine::back_off(Tick& tick) noexcept
 {
     if (!(tick.s.own.velocity.norm() < kStanding + settings_.back_off_speed)) {
         standing_since_.reset();
@@ -97,7 +99,7 @@ void StateMachine::brake(Tick& tick) noexcept
 }
 
 /// Given up, and no traffic comes: brakes until the autopilot holds.
-bool StateMachine::stays_given_up(Tick& tick) noexcept
+[[gnu::cold]] bool StateMachine::stays_given_up(Tick& tick) noexcept
 {
     if (phase_ != Phase::given_up) {
         return false;
@@ -114,7 +116,7 @@ bool StateMachine::stays_given_up(Tick& tick) noexcept
     return true;
 }
 
-/// Gives up where static threats on the nominal path have kept the vehicle from any progress for too long, braking.
+/// Gives up where static threats on the nominal path have kept the vehicle from any progress for too long.
 void StateMachine::give_up_when_blocked(Tick& tick) noexcept
 {
     const bool moves = tick.out.conflict && is_traffic(*tick.out.conflict);
@@ -124,9 +126,9 @@ void StateMachine::give_up_when_blocked(Tick& tick) noexcept
         block_since_ = tick.s.now;
         return;
     }
-    // Braking alone counts: a path along the block may be flown in several manoeuvres, with stops between them.
+    // A path along the block may be flown in several manoeuvres, with stops between them: their time counts a quarter.
     if (phase_ != Phase::braking) {
-        block_since_.us += tick.s.now.us - last_update_.us;
+        block_since_.us += 3 * (tick.s.now.us - last_update_.us) / 4;
     }
     const bool stands =
         tick.s.own.velocity.norm() < kStanding && tick.s.limits.kind == vehicle::VehicleKind::multirotor;

@@ -121,16 +121,6 @@ public:
         return margin - handicap_of(command) >= best.margin - handicap_of(best.command);
     }
 
-    /// `brake` is the best where no command is better.
-    void prefer(const Fallback& brake, Fallback& best) noexcept
-    {
-        const float least = best.margin - handicap_of(best.command) + handicap_of(brake.command);
-        const float margin = margin_of(brake.command, least);
-        if (margin >= least && margin > -world::kSeparationCap) {
-            best = {brake.kind, brake.command, margin};
-        }
-    }
-
 private:
     const world::Situation& s_;
     float corner_;                         ///< radius of the rounded corners [m]
@@ -249,9 +239,9 @@ Fallback choose_fallback(const world::Situation& s, const world::Way& way, const
     search.count_likely(likely);
     // First, so that it is compared with whatever the budget lasts for.
     const float former = escaped ? search.margin_of(previous->command) : -world::kSeparationCap;
-    Fallback best{world::ManoeuvreKind::brake, Vec3::Zero(), -world::kSeparationCap};
+    // Before all commands: where the budget ends early, none that happened to be checked is taken in its place.
+    Fallback best{brake.kind, brake.command, search.margin_of(brake.command)};
     search_escapes(s, way, search, best);
-    search.prefer(brake, best);
     if (best.margin >= 0.0F) {
         search.count_all();
         const Fallback clear = search_clear(s, way, search, best);

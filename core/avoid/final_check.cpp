@@ -128,7 +128,9 @@ Assessment assess(const world::Situation& situation, const world::Manoeuvre& man
     out.margin = separation.margin;
     if (out.margin >= 0.0F) {
         separation.margin += kept;
-        out.cost = cost_of(situation, manoeuvre, {flight.path.points.data(), points}, separation, budget);
+        const vehicle::VehicleLimits limits = vehicle::widened(situation.limits, -kept);
+        out.cost = cost_of(world::with_limits(situation, limits), manoeuvre, {flight.path.points.data(), points},
+                           separation, budget);
     }
     return out;
 }

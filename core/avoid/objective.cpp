@@ -2,6 +2,7 @@
 #include "core/avoid/objective.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "core/base/work_units.hpp"
@@ -19,21 +20,35 @@ constexpr float kWantedMargin = 1.0F;     ///< [m]
 constexpr Seconds kMethodChange = 1.0F;   ///< for a change of the method
 constexpr Seconds kSideChange = 6.0F;     ///< for a change of the side
 constexpr Seconds kAgainstRules = 6.0F;   ///< for the side on which two vehicles do not pass
+constexpr Seconds kDeadEnd = 6.0F;        ///< for an obstacle on the straight way back to the route
+constexpr Seconds kShortestWay = 1e-3F;   ///< such a way takes no less
 constexpr float kOppositeCosine = -0.1F;  ///< sides further apart than this (cosine) are opposite ones
 
 /// What is left of the way to the route's end, and where the vehicle is beside it.
 struct Place {
     float left = 0.0F;        ///< [m]
     Vec3 off = Vec3::Zero();  ///< from the route [m]
+    float arc_length = 0.0F;  ///< of the route, abeam of the vehicle [m]
 };
 
 Place place_of(const path::RouteView& route, float length, const Vec3& position, std::size_t from) noexcept
 {
     const path::Abeam abeam = route.abeam_of(position, from);
-    return {length - abeam.arc_length + kWayBack * abeam.off, position - abeam.point.position};
+    return {length - abeam.arc_length + kWayBack * abeam.off, position - abeam.point.position, abeam.arc_length};
 }
 
 bool are_opposite(const Vec3& a, const Vec3& b) noexcept { return a.dot(b) < kOppositeCosine; }
+
+/// Whether any threat of a situation blocks the straight way from `from` to `to`, flown at `speed`.
+bool is_blocked(const world::Situation& s, const Vec3& from, const Vec3& to, float speed, WorkBudget& budget) noexcept
+{
+    constexpr world::Cutoff kClearOrNot{0.0F, 0.0F, {}};
+    const Seconds duration = std::max(kShortestWay, (to - from).norm() / speed);
+    const Vec3 velocity = (to - from) / duration;
+    const std::array<path::PathPoint, 2> way{path::PathPoint{from, velocity, 0.0F},
+                                             path::PathPoint{to, velocity, duration}};
+    return world::least_separation(s, way, duration, budget, s.rules.escape, kClearOrNot).margin < 0.0F;
+}
 
 }  // namespace
 
@@ -81,6 +96,13 @@ ManoeuvreCost cost_of(const world::Situation& s, const world::Manoeuvre& manoeuv
     if (separation.against.kind == world::ThreatKind::track && separation.against.index < tracks.size() &&
         are_opposite(world::passing_side(s, tracks[separation.against.index]), cost.side)) {
         cost.rules = kAgainstRules;
+    }
+    const float ahead = std::min(place.arc_length + s.rules.lookahead * speed, length);
+    world::Situation fixed = s;
+    fixed.threats = world::of_kind(s.threats, world::ThreatKind::obstacle);
+    if (!fixed.threats.empty() && (!budget.spend(point_units) || is_blocked(fixed, flight.back().position,
+                                                                            route.at(ahead).position, speed, budget))) {
+        cost.dead_end = kDeadEnd;
     }
     return cost;
 }

@@ -111,7 +111,7 @@ struct Settings {
     /// one take-over, not several, 0..60 [s].
     Seconds least_control = 5.0F;
     /// A vehicle that static threats block, without getting anywhere, gives up control and asks for a hold after this
-    /// much time of braking; 0: never [s].
+    /// much time, of which all but braking counts a quarter; 0: never [s].
     Seconds patience = 20.0F;
     std::uint32_t plan_budget = 23000;  ///< of one plan, whatever updates it takes [work units]
     // Of `plan_budget` kept back for each method that is asked after another one [work units].

@@ -117,7 +117,7 @@ private:
     TimePoint last_update_;
     bool held_back_ = false;        ///< the last command, so that all can stop
     Vec3 block_at_ = Vec3::Zero();  ///< where the vehicle is since block_since_, more or less
-    TimePoint block_since_;         ///< moved on by the time in which the vehicle does not brake
+    TimePoint block_since_;         ///< moved on where the vehicle does not brake
     world::Manoeuvre answer_;       ///< of the last plan
     SlicedPlan* sliced_ = nullptr;
 };

@@ -39,6 +39,7 @@ inline constexpr std::uint32_t kBoundPiece = 1;    ///< and each bound of the ai
 inline constexpr std::uint32_t kThreat = 3;        ///< track or obstacle
 inline constexpr std::uint32_t kThreatChunk = 2;   ///< and eight pieces at once
 inline constexpr std::uint32_t kThreatPiece = 3;   ///< and one piece of eight that may be near
+inline constexpr std::uint32_t kBoxBound = 2;      ///< and part of a piece, where a box may be far by its own axes
 inline constexpr std::uint32_t kSpherePart = 8;    ///< and part of a piece, where the threat is a sphere
 inline constexpr std::uint32_t kCylinderPart = 6;  ///< or a cylinder: both ends of it
 inline constexpr std::uint32_t kCylinderTurn = 3;  ///< and each instant between them that is checked

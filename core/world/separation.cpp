@@ -106,6 +106,20 @@ void against_sphere(const Vec3& half_extents, const Flight& flight, const Threat
     }
 }
 
+/// The way from `from` to `to` keeps a box farther away than `margin`, as its own three axes say: a lower bound that
+/// costs far less than a query.
+bool stays_beyond_box(float margin, const Vec3& half, const Vec3& from, const Vec3& to, const geometry::Shape& box,
+                      float extra) noexcept
+{
+    const Mat3 into = box.axes.transpose();
+    const Vec3 a = into * (from - box.centre);
+    const Vec3 b = into * (to - box.centre);
+    const Vec3 near = a.cwiseMin(b).cwiseMax(-a.cwiseMax(b));
+    const Vec3 apart = (near - box.half - into.cwiseAbs() * half).cwiseMax(0.0F);
+    const float beyond = std::max(margin + extra, 0.0F);
+    return apart.squaredNorm() > beyond * beyond;
+}
+
 /// Margins of solids are resolved no finer than kObstacleResolution, and one query costs hundreds of support calls:
 /// the shrunk surface clears the start by that much more, and grows back in coarser pieces.
 // NOLINTNEXTLINE(readability-function-cognitive-complexity): as above
@@ -152,6 +166,14 @@ void against_solid(const Vec3& half, const Flight& flight, const Threat& threat,
                 const Seconds offset = length * static_cast<float>(part);
                 const Seconds start = p.start + offset;
                 const Vec3 from = p.from + p.velocity * offset;
+                if (shape.kind == geometry::ShapeKind::box) {
+                    if (!paid(budget, units::kBoxBound, best, start, ref)) {
+                        return;
+                    }
+                    if (stays_beyond_box(best.margin, half, from, from + p.velocity * length, shape, grown)) {
+                        continue;
+                    }
+                }
                 const float margin = obstacle_margin(half, from, from + p.velocity * length, shape, budget, grown);
                 if (budget.exhausted()) {
                     consider(best, -kSeparationCap, start, ref);

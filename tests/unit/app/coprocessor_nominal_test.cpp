@@ -49,7 +49,7 @@ TEST_F(WayBlocked, IsGuardedAgainOnceThePilotChoosesTheMission)
     ASSERT_EQ(flight->mode, link::FlightMode::hold);
     const std::size_t taken = flight->taken.size();
     flight->mode = link::FlightMode::mission;
-    flight->fly(25.0F);
+    flight->fly(45.0F);
     EXPECT_GT(flight->taken.size(), taken);
     EXPECT_LT(flight->state.position.x(), 59.0F) << "the own box stays clear of it";
     EXPECT_EQ(flight->mode, link::FlightMode::hold);

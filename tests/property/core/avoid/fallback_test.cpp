@@ -190,8 +190,9 @@ TEST(FallbackAgainstAFineSearch, WithAnyBudgetTheFormerOneIsLeftForABetterOneAlo
         static_cast<void>(choose_fallback(s, world::way_of(s), &previous, Settings{}, whole));
         WorkBudget one(kPlenty);
         static_cast<void>(command_margin(s, previous.command, Settings{}, one));
-        // Enough for braking and, twice, for what is flown.
-        const std::uint32_t units = 4 * (kPlenty - one.left()) + random.below(kPlenty - whole.left());
+        static_cast<void>(command_margin(s, Vec3::Zero(), Settings{}, one));
+        // Enough for braking and for what is flown, twice.
+        const std::uint32_t units = 3 * (kPlenty - one.left()) + random.below(kPlenty - whole.left());
         WorkBudget budget(units);
         const Fallback chosen = choose_fallback(s, world::way_of(s), &previous, Settings{}, budget);
         if (chosen.margin >= 0.0F) {

@@ -45,7 +45,7 @@ TEST(GivingUp, ExactlyAfterThePatience)
     EXPECT_EQ(w.supervisor.diagnostics().control_lost, 0U);
 }
 
-/// Too near to the wall it would back away, and does not get to. Traffic far away has no part in it.
+/// Too near to the wall as well: it stands, for backing away begins as near. Traffic far away has no part in it.
 TEST(GivingUp, InsideAMarginAllTheSame)
 {
     AtAWall w(giving_up());
@@ -53,7 +53,6 @@ TEST(GivingUp, InsideAMarginAllTheSame)
     w.f.scene.track(Vec3(2000, 0, 30), Vec3::Zero(), 1.0F);
     static_cast<void>(w.update(false));
     const Guidance before = w.wait(19.5F, 0.5F);
-    EXPECT_EQ(before.kind, ManoeuvreKind::velocity);
     EXPECT_FALSE(before.blocked);
     const Guidance g = w.after(0.5F);
     EXPECT_TRUE(g.blocked);
@@ -119,7 +118,7 @@ TEST(GivingUp, CountsFromTheTakeOver)
 }
 
 /// A path along a block that is flown in parts, with stops between them, may take longer than the patience.
-TEST(GivingUp, DoesNotCountTheTimeOfManoeuvres)
+TEST(GivingUp, CountsAQuarterOfTheTimeOfManoeuvres)
 {
     AtAWall w(giving_up());
     bool finds = false;
@@ -133,10 +132,38 @@ TEST(GivingUp, DoesNotCountTheTimeOfManoeuvres)
     ASSERT_EQ(w.wait(10.0F, 0.5F).state, State::avoiding);
     finds = false;
     w.f.scene.obstacle(geometry::make_box(Vec3(53, 0, 30), Vec3(0.8F, 200, 200)));
-    const Guidance before = w.wait(7.5F, 0.5F);
+    // 12 s, a quarter of 10 s, and 5.5 s.
+    const Guidance before = w.wait(5.0F, 0.5F);
     EXPECT_EQ(before.state, State::braking);
     EXPECT_FALSE(before.blocked);
     EXPECT_TRUE(w.wait(0.5F, 0.5F).blocked);
+}
+
+/// To and fro within 15 m, with an instant of braking after each 2 s: it gives up after 4 times the patience.
+TEST(GivingUp, ComesInTheEndWhereManoeuvresLeadNowhere)
+{
+    AtAWall w(giving_up());
+    w.method = {[&](const Situation& s, WorkBudget&, Manoeuvre& out) {
+        out = along(s, {s.own.position, s.own.position - Vec3(100, 0, 0)}, Vec3(0, 0, 0));
+        return w.f.scene.obstacles.size() == 1 ? PlanStatus::found : PlanStatus::none_available;
+    }};
+    static_cast<void>(w.update(false));
+    Seconds braked = 0.0F;
+    Seconds flown = 0.0F;
+    Guidance g;
+    for (float at = 55.0F; !g.blocked && flown < 200.0F; at = 110.0F - 7.0F - at) {
+        w.stand(Vec3(at, 0, 30));
+        ASSERT_EQ(w.wait(2.0F, 0.5F).state, State::avoiding) << flown;
+        flown += 2.0F;
+        w.f.scene.obstacle(geometry::make_box(Vec3(at - 2.0F, 0, 30), Vec3(0.8F, 200, 200)));
+        g = w.after(0.1F);
+        braked += 0.1F;
+        ASSERT_EQ(g.state, g.blocked ? State::watching : State::braking) << flown;
+        w.f.scene.obstacles.pop_back();
+    }
+    EXPECT_TRUE(g.blocked);
+    EXPECT_NEAR(flown / 4.0F + braked, 20.0F, 0.7F);
+    EXPECT_EQ(w.supervisor.diagnostics().blocked, 1U);
 }
 
 TEST(GivingUp, CountsAnewAfterTraffic)

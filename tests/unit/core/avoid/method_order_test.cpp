@@ -140,6 +140,41 @@ TEST(MethodOrders, TheAnswerThatCostsLeastIsFlownWhoeverIsAskedFirst)
     }
 }
 
+/// A short descent that stops before a house costs less than a way over it but for the dead end.
+TEST(MethodOrders, TheWayAroundIsFlownRatherThanAStopBeforeAHouse)
+{
+    for (const bool around_first : {false, true}) {
+        Flight f;
+        f.scene.obstacle(geometry::make_box(Vec3(27, 0, 30), Vec3(3, 5, 5)));
+        const auto around = [](const Situation& s, Manoeuvre& out) { out = detour(s, kLeft, 14.0F, 80.0F); };
+        const auto stops = [](const Situation& s, Manoeuvre& out) {
+            out = along(s, {s.own.position, s.own.position + Vec3(15, 0, -2)}, Vec3(0, 0, -1));
+        };
+        const auto answer = [&](bool goes_around) {
+            return [=](const Situation& s, WorkBudget&, Manoeuvre& out) {
+                goes_around ? around(s, out) : stops(s, out);
+                return PlanStatus::found;
+            };
+        };
+        FakeMethod first{answer(around_first)};
+        SecondFake second{{answer(!around_first)}};
+        Supervisor supervisor(quick(), first, second);
+        const Guidance g = f.update(supervisor, true);
+        ASSERT_EQ(g.state, State::avoiding);
+        EXPECT_EQ(g.answers, 2U);
+        EXPECT_EQ(g.by, around_first ? kFirst : kSecond);
+        // The other one costs less, but for the dead end.
+        const Situation s = f.scene.situation();
+        Manoeuvre stop;
+        stops(s, stop);
+        WorkBudget budget(world::test::kPlenty);
+        const ManoeuvreCost cost = assess(s, stop, Settings{}, 0.0F, budget).cost;
+        EXPECT_EQ(cost.dead_end, 6.0F);
+        EXPECT_LT(cost.total() - cost.dead_end, g.cost);
+        EXPECT_GT(cost.total(), g.cost);
+    }
+}
+
 /// A refused answer is not compared, however little it costs.
 TEST(MethodOrders, WhatIsNotClearIsNotCompared)
 {

@@ -6,6 +6,9 @@
 
 #include <cmath>
 
+#include "core/avoid/final_check.hpp"
+#include "core/avoid/planning.hpp"
+#include "core/base/work_units.hpp"
 #include "tests/unit/core/avoid/fakes.hpp"
 
 namespace jink::avoid {
@@ -116,8 +119,145 @@ TEST(Objective, WithoutWorkOrARouteNothingIsCheap)
     WorkBudget less(10);
     EXPECT_TRUE(std::isinf(avoid::cost_of(s, {}, aside, apart(1.0F), less).total()));
     WorkBudget ample(1000);
+    f.scene.obstacle(geometry::make_box(Vec3(40, 0, 30), Vec3(1, 20, 20)));
     const world::Reference none;
     EXPECT_TRUE(std::isinf(avoid::cost_of(world::with_reference(s, none), {}, aside, apart(1.0F), ample).total()));
+}
+
+// --- dead ends ---
+
+/// At (20, 0, 30) 5 m above the leg's height; 8 s of look-ahead at 5 m/s later the leg is at (60, 0, 30).
+Seconds dead_end_of(const Flight& f, const Vec3& end = Vec3(20, 0, 35))
+{
+    return cost(f, flight({{0, 0, 30}, end}, 4.0F), apart(1.0F)).dead_end;
+}
+
+TEST(DeadEnds, AreBlockedByAnObstacleOnTheStraightWay)
+{
+    Flight f;
+    EXPECT_EQ(dead_end_of(f), 0.0F);
+    const auto flown = flight({{0, 0, 30}, {20, 0, 35}}, 4.0F);
+    const ManoeuvreCost free = cost(f, flown, apart(1.0F));
+    f.scene.obstacle(geometry::make_box(Vec3(40, 0, 30), Vec3(1, 20, 20)));
+    const ManoeuvreCost blocked = cost(f, flown, apart(1.0F));
+    EXPECT_EQ(blocked.dead_end, 6.0F);
+    EXPECT_NEAR(blocked.total(), free.total() + 6.0F, kExact) << "all other terms stay";
+    f.scene.obstacles.clear();
+    f.scene.obstacle(geometry::make_sphere(Vec3(40, 0, 32.5F), 1.0F));
+    EXPECT_EQ(dead_end_of(f), 6.0F) << "in the middle of the way, beside the leg";
+}
+
+/// The way is the vehicle's box wide, and no wider.
+TEST(DeadEnds, AreAsWideAsTheVehicle)
+{
+    Flight f;
+    const float half = f.scene.limits.half_extents.y();
+    const auto beside = [&](float gap) {
+        f.scene.obstacles.clear();
+        f.scene.obstacle(geometry::make_box(Vec3(40, half + gap + 10.0F, 30), Vec3(1, 10, 20)));
+        return dead_end_of(f);
+    };
+    EXPECT_EQ(beside(0.1F), 0.0F);
+    EXPECT_EQ(beside(-0.1F), 6.0F);
+}
+
+TEST(DeadEnds, ReachFromTheEndToTheLookAhead)
+{
+    Flight f;
+    const auto sphere_at = [&](float x, float z) {
+        f.scene.obstacles.clear();
+        f.scene.obstacle(geometry::make_sphere(Vec3(x, 0, z), 0.5F));
+        return dead_end_of(f);
+    };
+    const float reach = 0.5F + f.scene.limits.half_extents.x();
+    EXPECT_EQ(sphere_at(60.0F + reach - 0.1F, 30), 6.0F);
+    EXPECT_EQ(sphere_at(60.0F + reach + 0.1F, 30), 0.0F) << "beyond the look-ahead";
+    EXPECT_EQ(sphere_at(20.0F - reach - 0.1F, 35), 0.0F) << "before the end";
+    EXPECT_EQ(sphere_at(40, 40), 0.0F);
+    f.scene.rules.lookahead = 4.0F;
+    EXPECT_EQ(sphere_at(40, 30), 6.0F);
+    EXPECT_EQ(sphere_at(60, 30), 0.0F);
+}
+
+TEST(DeadEnds, AreNoneForWhatMoves)
+{
+    Flight f;
+    f.scene.track(Vec3(40, 0, 32.5F), Vec3::Zero(), 3.0F);
+    f.scene.cylinder(world::Vec2(50, 0), 5.0F);
+    f.scene.cylinders[0].top = 100.0F;
+    f.scene.airspace.has_ceiling = true;
+    f.scene.airspace.ceiling = 32.0F;
+    EXPECT_EQ(dead_end_of(f), 0.0F);
+}
+
+/// Nothing behind the route's end counts, and from beyond it the way leads back.
+TEST(DeadEnds, EndWithTheRoute)
+{
+    Flight f;
+    f.scene.leg(Vec3(0, 0, 30), Vec3(30, 0, 30), 5.0F);
+    f.scene.obstacle(geometry::make_box(Vec3(36, 0, 30), Vec3(1, 20, 20)));
+    EXPECT_EQ(dead_end_of(f), 0.0F);
+    EXPECT_EQ(dead_end_of(f, Vec3(40, 0, 30)), 6.0F);
+    EXPECT_EQ(dead_end_of(f, Vec3(30, 0, 30)), 0.0F) << "at the end of the route itself";
+}
+
+/// A corner of the route counts: the wall stands on the first leg's continuation, and then across the second leg.
+TEST(DeadEnds, FollowTheRouteRoundItsCorner)
+{
+    Flight f;
+    path::Route route;
+    ASSERT_EQ(route.add_leg(Vec3(0, 0, 30), Vec3(30, 0, 30)), path::RouteStatus::ok);
+    ASSERT_EQ(route.add_leg(Vec3(30, 0, 30), Vec3(30, 100, 30)), path::RouteStatus::ok);
+    f.scene.reference = world::Reference(route, 5.0F);
+    f.scene.obstacle(geometry::make_box(Vec3(40, 0, 30), Vec3(1, 20, 20)));
+    EXPECT_EQ(dead_end_of(f), 0.0F);
+    f.scene.obstacle(geometry::make_box(Vec3(25, 20, 30), Vec3(3, 1, 20)));
+    EXPECT_EQ(dead_end_of(f), 6.0F) << "on the straight way to (30, 30, 30)";
+}
+
+/// One point of the route more than the terms before, and the check. Unknown is blocked.
+TEST(DeadEnds, WithoutTheWorkToKnowAreBlocked)
+{
+    Flight f;
+    f.scene.obstacle(geometry::make_sphere(Vec3(200, 0, 30), 1.0F));
+    const auto flown = flight({{0, 0, 30}, {20, 0, 35}}, 4.0F);
+    const world::Situation s = f.scene.situation();
+    WorkBudget ample(1000);
+    EXPECT_EQ(avoid::cost_of(s, {}, flown, apart(1.0F), ample).dead_end, 0.0F);
+    const std::uint32_t whole = ample.spent();
+    EXPECT_EQ(whole, 9U + 2U + 1U + 2U * units::kPathPiece + units::kThreat + units::kThreatChunk);
+    for (std::uint32_t units = 9; units < whole; ++units) {
+        WorkBudget less(units);
+        const ManoeuvreCost c = avoid::cost_of(s, {}, flown, apart(1.0F), less);
+        EXPECT_EQ(c.dead_end, 6.0F) << units;
+        EXPECT_TRUE(std::isfinite(c.total())) << units;
+        EXPECT_TRUE(less.exhausted()) << units;
+    }
+    WorkBudget exactly(whole);
+    EXPECT_EQ(avoid::cost_of(s, {}, flown, apart(1.0F), exactly).dead_end, 0.0F);
+    WorkBudget none(8);
+    EXPECT_TRUE(std::isinf(avoid::cost_of(s, {}, flown, apart(1.0F), none).total()));
+}
+
+/// Plans of the inflated vehicle and of the vehicle as it is compare by the vehicle as it is.
+TEST(DeadEnds, AreOfTheVehicleAsItIsWhateverThePlanKept)
+{
+    Flight f;
+    f.scene.own.velocity = Vec3::Zero();
+    const float half = f.scene.limits.half_extents.y();
+    f.scene.obstacle(geometry::make_box(Vec3(40, half + 0.2F + 10.0F, 30), Vec3(1, 10, 20)));
+    const world::Situation s = f.scene.situation();
+    const Inflated inflated(s, 0.4F);
+    const Manoeuvre up = along(s, {s.own.position, s.own.position + Vec3(10, 0, 5)}, Vec3(0, 0, 1));
+    const auto assessed = [&](const world::Situation& of, float kept) {
+        WorkBudget budget(100'000);
+        const Assessment a = assess(of, up, Settings{}, kept, budget);
+        EXPECT_GE(a.margin, 0.0F);
+        return a.cost.dead_end;
+    };
+    EXPECT_EQ(assessed(s, 0.0F), 0.0F);
+    EXPECT_EQ(assessed(inflated.situation, 0.4F), 0.0F);
+    EXPECT_EQ(assessed(inflated.situation, 0.0F), 6.0F) << "a vehicle that is that large does not pass";
 }
 
 }  // namespace
