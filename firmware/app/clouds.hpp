@@ -17,7 +17,8 @@ struct CloudView {
     Seconds keep = 1.0F;               ///< obstacles expire so long after the scan's stamp
     Vec3 half_extents = Vec3::Zero();  ///< of the own box [m]
     bool has_floor = false;
-    float floor = 0.0F;  ///< [m]
+    float floor = 0.0F;         ///< [m]
+    float deceleration = 5.0F;  ///< when braking [m/s2]
 };
 
 /// What a co-processor knows of its point clouds. Behind an interface, so that an image without any carries none of it.

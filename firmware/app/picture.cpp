@@ -115,7 +115,8 @@ void Picture::take_clouds(const OwnState& own, bool has_autopilot, const Configu
                          c.scan_keep,
                          c.limits.half_extents,
                          air.has_floor,
-                         air.floor};
+                         air.floor,
+                         c.limits.max_acceleration};
     if (scans_shown_ != nullptr) {
         scans_shown_->look_from(view);
         scans_shown_->picture().block_unseen(c.blocks_unseen);

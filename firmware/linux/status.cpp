@@ -77,10 +77,10 @@ void write_image(std::FILE* f, const char* name, const app::CloudDiagnostics& d)
     const auto u = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
     std::fprintf(f,
                  "    \"%s\": {\"scans\": %u, \"unplaced\": %u, \"hits\": %llu, \"nothing\": %llu, \"invalid\": %llu, "
-                 "\"lost\": %llu,\n      \"body\": %llu, \"below_floor\": %llu, \"beyond\": %llu, \"behind\": %llu, "
-                 "\"kept\": %llu, \"obstacles\": %u, \"no_room\": %u}",
+                 "\"lost\": %llu,\n      \"body\": %llu, \"below_floor\": %llu, \"beyond\": %llu, "
+                 "\"kept\": %llu, \"obstacles\": %u, \"left_out\": %u, \"coarse\": %u, \"remembered\": %u}",
                  name, d.scans, d.scans_unplaced, u(d.hits), u(d.nothing), u(d.invalid), u(d.lost), u(d.body),
-                 u(d.below_floor), u(d.beyond), u(d.behind), u(d.kept), d.obstacles, d.no_room);
+                 u(d.below_floor), u(d.beyond), u(d.kept), d.obstacles, d.left_out, d.coarse, d.remembered);
 }
 
 void write_clouds(std::FILE* f, const app::CloudInput& clouds)

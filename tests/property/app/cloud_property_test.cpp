@@ -82,6 +82,8 @@ protected:
     void scan(const std::vector<Hit>& hits, float yaw)
     {
         table->clear();
+        image = std::make_unique<CloudObstacles>(0);
+        image->give_to(*table);
         CloudView view;
         view.is_placed = true;
         view.yaw = yaw;
@@ -96,83 +98,83 @@ protected:
         image->end_scan(0);
     }
     std::unique_ptr<world::ObstacleTable> table = std::make_unique<world::ObstacleTable>();
-    std::unique_ptr<CloudObstacles> image = [this] {
-        auto made = std::make_unique<CloudObstacles>(0);
-        made->give_to(*table);
-        return made;
-    }();
+    std::unique_ptr<CloudObstacles> image;
 };
 
-TEST_F(CloudLaws, EveryHitOfAPatchLiesWithinAnObstacle)
+/// How far outside a box or an upright capsule a point lies, in double precision [m].
+double outside(const geometry::Shape& shape, const P& point)
+{
+    const P local = shape.axes.cast<double>().transpose() * (point - shape.centre.cast<double>());
+    const P past = (local.cwiseAbs() - shape.half.cast<double>()).cwiseMax(0.0);
+    const P level(local.x(), local.y(), past.z());
+    return shape.kind == geometry::ShapeKind::box ? past.norm()
+                                                  : std::max(0.0, level.norm() - static_cast<double>(shape.radius));
+}
+
+TEST_F(CloudLaws, EveryHitLiesWithinAnObstacle)
 {
     constexpr std::uint64_t kSeed = 20261123;
     Random random(kSeed);
     std::size_t checked = 0;
-    std::size_t crowded = 0;
-    for (int scene = 0; scene < 2000; ++scene) {
+    std::size_t full = 0;
+    std::size_t whole = 0;
+    for (int scene = 0; scene < 1000; ++scene) {
         const std::vector<Hit> hits = random_scene(random);
         const float yaw = random.uniform(-kPi, kPi);
         scan(hits, yaw);
-        std::array<double, CloudObstacles::kBins> nearest{};
-        nearest.fill(1e9);
-        bool all_sure = true;
-        for (const Hit& hit : hits) {
-            all_sure = all_sure && hit.bin >= 0;
-            if (hit.bin >= 0) {
-                double& best = nearest[static_cast<std::size_t>(hit.bin)];
-                best = std::min(best, hit.range);
-            }
-        }
-        if (!all_sure) {
-            continue;  // the nearest of a bin is not known to this oracle
-        }
-        std::array<double, CloudObstacles::kBins> order = nearest;
-        std::sort(order.begin(), order.end());
-        // Of bins that differ by less than the image's resolution either may come first.
-        const double last = order[kMaxCloudObstacles] - 0.02;
-        crowded += order[kMaxCloudObstacles] < 1e9 ? 1 : 0;
         const Eigen::Matrix3d turn = Eigen::AngleAxisd(static_cast<double>(yaw), P::UnitZ()).toRotationMatrix();
+        const bool is_all = image->diagnostics().left_out == 0;
+        whole += is_all ? 1 : 0;
         for (const Hit& hit : hits) {
-            const double first = nearest[static_cast<std::size_t>(hit.bin)];
-            if (first > last || hit.range > first + depth_at(first)) {
+            if (!is_all && hit.range > static_cast<double>(CloudObstacles::sure_range({}))) {
                 continue;
             }
-            ++checked;
             const P world = turn * hit.point.cast<double>();
-            const bool covered =
-                std::any_of(table->obstacles().begin(), table->obstacles().end(), [&](const world::Obstacle& o) {
-                    return (o.shape.centre.cast<double>() - world).norm() <= static_cast<double>(o.shape.radius);
-                });
-            ASSERT_TRUE(covered) << "seed " << kSeed << " scene " << scene << " range " << hit.range;
+            double least = 1e9;
+            for (const world::Obstacle& o : table->obstacles()) {
+                ASSERT_TRUE(o.shape.kind == geometry::ShapeKind::box || o.shape.kind == geometry::ShapeKind::capsule);
+                least = std::min(least, outside(o.shape, world));
+            }
+            ASSERT_LE(least, 1e-3) << "seed " << kSeed << " scene " << scene << " range " << hit.range;
+            ++checked;
         }
         ASSERT_LE(table->obstacles().size(), kMaxCloudObstacles);
+        full += table->obstacles().size() == kMaxCloudObstacles ? 1 : 0;
     }
+    EXPECT_GT(whole, 100U);
     EXPECT_GT(checked, 100'000U);
-    EXPECT_GT(crowded, 100U);
+    EXPECT_GT(full, 100U);
 }
 
 TEST_F(CloudLaws, NoObstacleReachesMuchNearerThanWhatWasHit)
 {
     Random random(20261124);
-    double least = 1.0;
+    std::size_t judged = 0;
+    std::size_t nearer = 0;
+    std::size_t much_nearer = 0;
     for (int scene = 0; scene < 1000; ++scene) {
         const std::vector<Hit> hits = random_scene(random);
         scan(hits, 0.0F);
+        const bool is_coarse = image->diagnostics().coarse > 0;
         for (const world::Obstacle& o : table->obstacles()) {
             double nearest = 1e9;
             for (const Hit& hit : hits) {
-                const bool inside = (o.shape.centre - hit.point).norm() <= o.shape.radius;
+                const bool inside = outside(o.shape, hit.point.cast<double>()) <= 1e-3;
                 nearest = inside ? std::min(nearest, hit.range) : nearest;
             }
             ASSERT_LT(nearest, 1e9) << "an obstacle without a hit, scene " << scene;
-            const double surface = static_cast<double>(o.shape.centre.norm() - o.shape.radius);
-            const bool is_outer = o.id % 9 == 0 || o.id % 9 == 8;
-            // Geometry of a bin: 0.877 within the rows, 0.52 where they reach to the poles; and the least radius.
-            ASSERT_GE(surface, (is_outer ? 0.5 : 0.87) * nearest - 0.28) << "scene " << scene;
-            least = std::min(least, surface / nearest);
+            const double surface = outside(o.shape, P::Zero());
+            if (!is_coarse) {
+                ++judged;
+                nearer += surface + 0.4 < 0.8 * nearest ? 1 : 0;
+                much_nearer += surface + 0.4 < 0.5 * nearest ? 1 : 0;
+            }
         }
     }
-    EXPECT_LT(least, 0.9);  // or the scenes try nothing
+    // Upright boxes hold slanting things with what is beside them: 9 and 2 of 100 here.
+    EXPECT_GT(judged, 20'000U);
+    EXPECT_LT(nearer, judged / 8);
+    EXPECT_LT(much_nearer, judged / 40);
 }
 
 TEST_F(CloudLaws, EveryRayIsCountedOnce)
@@ -202,8 +204,8 @@ TEST_F(CloudLaws, EveryRayIsCountedOnce)
     const CloudDiagnostics& d = some->diagnostics();
     EXPECT_EQ(d.hits, hits);
     EXPECT_EQ(d.nothing + d.invalid, others);
-    EXPECT_EQ(d.body + d.below_floor + d.beyond + d.behind + d.kept, hits);
-    for (const std::uint64_t cause : {d.body, d.below_floor, d.beyond, d.behind, d.kept}) {
+    EXPECT_EQ(d.body + d.below_floor + d.beyond + d.kept, hits);
+    for (const std::uint64_t cause : {d.body, d.below_floor, d.beyond, d.kept}) {
         EXPECT_GT(cause, 100U);
     }
 }
@@ -243,7 +245,7 @@ TEST(CloudLoad, HundredThousandPointsTenTimesASecond)
     EXPECT_EQ(counter.ended, kScans);
     const CloudDiagnostics& c = f->input.port_diagnostics();
     EXPECT_EQ(c.hits, kScans * kPoints);
-    EXPECT_EQ(c.body + c.below_floor + c.beyond + c.behind + c.kept, kScans * kPoints);
+    EXPECT_EQ(c.body + c.below_floor + c.beyond + c.kept, kScans * kPoints);
     EXPECT_EQ(c.obstacles, kScans * kMaxCloudObstacles);
 }
 

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "firmware/app/cloud.hpp"
+#include "firmware/app/near_field.hpp"
 
 namespace jink::app::test {
 
@@ -23,6 +24,14 @@ protected:
         view.stamp = now;
     }
     void look() { image->look_from(view); }
+    /// Nothing is known of former scans.
+    void forget()
+    {
+        table->clear();
+        image = std::make_unique<CloudObstacles>(0x1000000);
+        image->give_to(*table);
+        look();
+    }
     /// What happens before each scan.
     virtual void before_scan() {}
     void begin(std::uint8_t sensor = 0)
@@ -47,8 +56,9 @@ protected:
     [[nodiscard]] std::span<const world::Obstacle> obstacles() const { return table->obstacles(); }
     [[nodiscard]] bool is_covered(const Vec3& place) const
     {
-        return std::any_of(obstacles().begin(), obstacles().end(),
-                           [&](const world::Obstacle& o) { return (o.shape.centre - place).norm() <= o.shape.radius; });
+        return std::any_of(obstacles().begin(), obstacles().end(), [&](const world::Obstacle& o) {
+            return (nearest_point(o.shape, place) - place).norm() <= 1e-3F;
+        });
     }
     [[nodiscard]] const CloudDiagnostics& count() const { return image->diagnostics(); }
     /// At `azimuth` and `elevation` [degrees].
