@@ -33,6 +33,7 @@ void each_column(Result& r, Visit&& visit)
     visit("told", r.reported);
     visit("alone", r.alone);
     visit("duration", r.duration);
+    visit("goal_at", r.goal_at);
     visit("takeovers", r.takeovers);
     visit("conflicts", r.sides.conflicts);
     visit("flips_same", r.sides.same_picture);
@@ -172,6 +173,7 @@ EncounterResult result_of(const Scenario& scenario, Record flown)
     r.reported = record.reported[record.closest.threat];
     r.alone = flight.alone;
     r.duration = record.duration;
+    r.goal_at = record.goal_at;
     r.takeovers = record.takeovers;
     r.sides = record.sides;
     r.chosen_sides = record.chosen_sides;
@@ -195,6 +197,9 @@ EncounterResult fly_encounter(std::uint64_t seed, const Variant& variant)
     EncounterResult result = result_of(scenario, fly_in_process(scenario));
     if (result.failed_avoidable) {
         scenario.traffic.sigma_position = scenario.traffic.sigma_velocity = 0.0;
+        if (scenario.lidar) {
+            scenario.lidar->sigma = 0.0;
+        }
         result.noiseless = fly_in_process(scenario).closest.surface;
     }
     return result;

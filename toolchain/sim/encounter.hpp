@@ -23,9 +23,11 @@ struct EncounterResult {
     double separation = 0.0;  ///< least, centre to surface [m]
     double at = 0.0;          ///< time of `separation` [s]
     unsigned nearest = 0;     ///< index of the threat at `separation`
-    double reported = -1.0;   ///< time of the first message that reports that threat; negative: never [s]
+    double reported = -1.0;   ///< time of the first message or LiDAR scan that reports that threat; negative:
+                              ///< never [s]
     double alone = 0.0;       ///< least separation of the same mission without a co-processor [m]
     double duration = 0.0;    ///< of the flight [s]
+    double goal_at = -1.0;    ///< when the goal was reached; negative: never [s]
     unsigned takeovers = 0;
     SideCounts sides;                ///< as flown
     SideCounts chosen_sides;         ///< as chosen
@@ -64,11 +66,11 @@ struct Variant {
 /// Empty when all are accepted. O(n^2) for n parameters.
 [[nodiscard]] std::string refusal_of(const Variant& variant);
 
-/// Flies open_encounter(seed) in process and judges it (Trials::until_kept). An avoidable failure is flown again
-/// without sensor noise, with the same delays and losses. If the promise is then kept, noise caused the failure.
+/// Flies encounter_scenario(seed, variant) in process and judges it (Trials::until_kept). An avoidable failure is flown
+/// again without sensor noise, with the same delays and losses. If the promise is then kept, noise caused the failure.
 [[nodiscard]] EncounterResult fly_encounter(std::uint64_t seed, const Variant& variant);
 
-/// open_encounter(seed) for one variant.
+/// The encounter of the variant's kind, encounter_of(), with its planner, board and parameters.
 [[nodiscard]] Scenario encounter_scenario(std::uint64_t seed, const Variant& variant);
 
 /// Result of a finished flight; judges the flight.

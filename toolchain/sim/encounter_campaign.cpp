@@ -83,6 +83,9 @@ void write_replay(const BlockFolder& folder, const Variant& variant, const Encou
 {
     Scenario scenario = encounter_scenario(result.seed, variant);
     scenario.expect.outcomes = {result.outcome};
+    if (scenario.to_goal) {
+        scenario.expect.goal_reached = result.goal_at >= 0.0;
+    }
     folder.write_file("worst/" + scenario.name + ".yaml",
                       scenario_text(scenario, encounter_columns() + "\n" + to_line(result)));
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "toolchain/sim/built_up.hpp"
 #include "toolchain/sim/random_scenario.hpp"
 #include "toolchain/sim/uniform.hpp"
 
@@ -114,6 +115,7 @@ std::string_view to_string(EncounterKind kind) noexcept
     case EncounterKind::windy: return "windy";
     case EncounterKind::cluttered: return "cluttered";
     case EncounterKind::late: return "late";
+    case EncounterKind::built_up: return "built_up";
     case EncounterKind::open: break;
     }
     return "open";
@@ -121,6 +123,9 @@ std::string_view to_string(EncounterKind kind) noexcept
 
 Scenario encounter_of(EncounterKind kind, std::uint64_t seed)
 {
+    if (kind == EncounterKind::built_up) {
+        return built_up_area(seed);
+    }
     Scenario s = open_encounter(seed);
     if (kind == EncounterKind::open) {
         return s;
@@ -152,6 +157,7 @@ Scenario encounter_of(EncounterKind kind, std::uint64_t seed)
         s.threats.resize(1);
         s.threats[0].appears_at = meeting_time(s, s.threats[0]) - uniform(random, 0.4, 1.6);
         break;
+    case EncounterKind::built_up:
     case EncounterKind::open: break;
     }
     return s;

@@ -55,7 +55,7 @@ void put_share(std::string& text, const char* what, std::size_t count, std::size
          100.0 * share.high);
 }
 
-void put_outcomes(std::string& text, const Results& results)
+void put_outcomes(std::string& text, EncounterKind kind, const Results& results)
 {
     line(text, "Outcomes: count, share, 95 % interval (Wilson; rule of three at none and at all)");
     for (const Outcome outcome :
@@ -68,6 +68,14 @@ void put_outcomes(std::string& text, const Results& results)
         put_share(text, ("... avoided with " + std::string(to_string(stack))).c_str(),
                   count_if(results, [&](const EncounterResult& r) { return flew(r) && r.outcome == Outcome::avoided; }),
                   count_if(results, flew));
+    }
+    if (flies_to_goal(kind)) {
+        const auto missed = [](const EncounterResult& r) { return r.goal_at < 0.0; };
+        put_share(text, "goal not reached", count_if(results, missed), results.size());
+        put_share(
+            text, "... at the end of a flight that braked",
+            count_if(results, [&](const EncounterResult& r) { return missed(r) && r.outcome == Outcome::braked; }),
+            results.size());
     }
 }
 
@@ -175,11 +183,10 @@ void put_sides(std::string& text, const Results& results)
               count_if(results, [](const EncounterResult& r) { return r.takeovers > 1; }), results.size());
 }
 
-void put_intruders(std::string& text, const Results& results)
+void put_intruders(std::string& text, const char* what, const Results& results)
 {
-    line(text, "\n%9s %8s %7s %9s %7s %10s %9s %9s %10s %10s %10s %10s %10s", "Intruders", "flights", "braked",
-         "breaches", "hits", "avoidable", "too late", "failed", "least [m]", "5 % [m]", "50 % [m]", "same pict.",
-         "changed p.");
+    line(text, "\n%9s %8s %7s %9s %7s %10s %9s %9s %10s %10s %10s %10s %10s", what, "flights", "braked", "breaches",
+         "hits", "avoidable", "too late", "failed", "least [m]", "5 % [m]", "50 % [m]", "same pict.", "changed p.");
     for (unsigned intruders = 1; intruders <= kMaxIntruders; ++intruders) {
         Results some;
         std::vector<double> separations;
@@ -253,11 +260,11 @@ std::string summary_text(const FolderSetup& setup, const Results& results)
     if (results.empty()) {
         return text;
     }
-    put_outcomes(text, results);
+    put_outcomes(text, setup.variant.kind, results);
     put_promises(text, results);
     put_sides(text, results);
     put_measures(text, results);
-    put_intruders(text, results);
+    put_intruders(text, setup.variant.kind == EncounterKind::built_up ? "Boxes" : "Intruders", results);
     Results bad;
     std::copy_if(results.begin(), results.end(), std::back_inserter(bad),
                  [](const EncounterResult& r) { return broke_promise(r) || r.outcome == Outcome::failed; });

@@ -91,7 +91,7 @@ Record fly(const Scenario& scenario, const Timing& timing, hal::ManualClock& clo
         }
         to(clock, plant.now());
     }
-    Record record = plant.record();
+    Record record = plant.record(lidar != nullptr ? lidar->reported() : std::vector<double>{});
     record.transport = "in process";
     record.inside = bench.inside();
     if (overflow) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include <Eigen/Geometry>
 
@@ -140,7 +141,8 @@ std::vector<LidarRay> rays_of(const LidarSensor& sensor)
     return rays;
 }
 
-std::vector<double> true_ranges(const World& world, const LidarSensor& sensor, const std::vector<LidarRay>& rays)
+std::vector<double> true_ranges(const World& world, const LidarSensor& sensor, const std::vector<LidarRay>& rays,
+                                std::vector<bool>* hit)
 {
     const Scenario& scenario = world.scenario();
     const Vec& from = world.own().position;
@@ -161,8 +163,14 @@ std::vector<double> true_ranges(const World& world, const LidarSensor& sensor, c
         if (scenario.ground && direction.z() < 0.0) {
             nearest = std::max(0.0, (from.z() - *scenario.ground) / -direction.z());
         }
+        std::optional<std::size_t> at;
         for (const std::size_t i : seen) {
+            const double before = nearest;
             nearest = nearer(nearest, ray_range(scenario.threats[i], world.threat_position(i), from, direction));
+            at = nearest != before ? i : at;
+        }
+        if (hit != nullptr && at && nearest <= sensor.range) {
+            (*hit)[*at] = true;
         }
         ranges.push_back(nearest <= sensor.range ? nearest : -1.0);
     }
@@ -170,7 +178,8 @@ std::vector<double> true_ranges(const World& world, const LidarSensor& sensor, c
 }
 
 Lidar::Lidar(const Scenario& scenario)
-    : sensor_(*scenario.lidar), rays_(rays_of(sensor_)), random_(scenario.seed * 1000003U + 999'983U)
+    : sensor_(*scenario.lidar), rays_(rays_of(sensor_)), reported_(scenario.threats.size(), -1.0),
+      random_(scenario.seed * 1000003U + 999'983U)
 {
 }
 
@@ -185,7 +194,13 @@ void Lidar::step(const World& world)
 
 void Lidar::measure(const World& world)
 {
-    const std::vector<double> ranges = true_ranges(world, sensor_, rays_);
+    std::vector<bool> hit(reported_.size(), false);
+    const std::vector<double> ranges = true_ranges(world, sensor_, rays_, &hit);
+    for (std::size_t i = 0; i < hit.size(); ++i) {
+        if (hit[i] && reported_[i] < 0.0) {
+            reported_[i] = to_seconds(now_) + sensor_.latency;
+        }
+    }
     std::vector<cloud::RawPoint> points;
     points.reserve(rays_.size());
     for (std::size_t i = 0; i < rays_.size(); ++i) {

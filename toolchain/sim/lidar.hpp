@@ -44,8 +44,10 @@ struct LidarRay {
 
 /// Present true ranges of rays [m] to the nearest threat sensed by LiDAR or to the ground; negative: nothing within the
 /// sensor's range. O(rays * threats).
+///
+/// @param hit  where given: true is written for each threat that a ray ends at; one entry per threat
 [[nodiscard]] std::vector<double> true_ranges(const World& world, const LidarSensor& sensor,
-                                              const std::vector<LidarRay>& rays);
+                                              const std::vector<LidarRay>& rays, std::vector<bool>* hit = nullptr);
 
 /// The simulated LiDAR and its line. Measures when a scan is due. The other end reads the product's compact frames
 /// (firmware/link/cloud/frame.hpp) once they have arrived.
@@ -64,6 +66,8 @@ public:
     /// Discards the bytes: the LiDAR has no input.
     [[nodiscard]] std::size_t write(std::span<const std::byte> from) noexcept override { return from.size(); }
     [[nodiscard]] hal::PortHealth health() const noexcept override;
+    /// Time at which the first scan with a return from each threat arrives [s]; negative: none.
+    [[nodiscard]] const std::vector<double>& reported() const noexcept { return reported_; }
 
 private:
     struct Scan {
@@ -76,6 +80,7 @@ private:
 
     const LidarSensor sensor_;
     std::vector<LidarRay> rays_;
+    std::vector<double> reported_;
     Random random_;
     Micros now_ = 0;
     Micros next_ = 0;

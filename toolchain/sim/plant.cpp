@@ -133,7 +133,7 @@ bool Plant::finished() const
     return back && world_.all_past() && faults_over();
 }
 
-Record Plant::record() const
+Record Plant::record(const std::vector<double>& scanned) const
 {
     Record record;
     record.name = scenario_.name;
@@ -161,7 +161,8 @@ Record Plant::record() const
     record.threats = scenario_.threats;
     for (std::size_t i = 0; i < scenario_.threats.size(); ++i) {
         record.appeared.push_back(world_.appeared(i) < 0 ? -1.0 : to_seconds(world_.appeared(i)));
-        record.reported.push_back(autopilot_.reported(i) < 0 ? -1.0 : to_seconds(autopilot_.reported(i)));
+        const double by_lidar = i < scanned.size() ? scanned[i] : -1.0;
+        record.reported.push_back(autopilot_.reported(i) < 0 ? by_lidar : to_seconds(autopilot_.reported(i)));
     }
     record.sides = sides_.counts(record.reported);
     record.chosen_sides = sides_.chosen(record.reported);

@@ -36,7 +36,8 @@ public:
     [[nodiscard]] const World& world() const noexcept { return world_; }
 
     /// Finishes the recording. The caller adds `inside` and further faults before `conclude`.
-    [[nodiscard]] Record record() const;
+    /// @param scanned  time at which a LiDAR first reported each threat [s], negative: never; empty: no LiDAR
+    [[nodiscard]] Record record(const std::vector<double>& scanned = {}) const;
 
 private:
     [[nodiscard]] bool cable_pulled() const noexcept;

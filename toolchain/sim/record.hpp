@@ -105,7 +105,8 @@ struct Record {
     std::vector<Vec> mission;
     std::vector<Threat> threats;
     std::vector<double> appeared;  ///< time at which each threat appeared; negative: never [s]
-    std::vector<double> reported;  ///< time at which the first message of each threat left the autopilot's end;
+    std::vector<double> reported;  ///< time at which the first message of each threat left the autopilot's end, or the
+                                   ///< first LiDAR scan with a return from it arrived; of a level scan: never;
                                    ///< negative: never [s]
     SideCounts sides;              ///< as flown, conflict by conflict
     SideCounts chosen_sides;       ///< as chosen; in process alone
