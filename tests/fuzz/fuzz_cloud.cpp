@@ -118,7 +118,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         JINK_FUZZ_CHECK(c.hits == c.body + c.below_floor + c.beyond + c.kept);
         JINK_FUZZ_CHECK(table->diagnostics().invalid == 0);
         for (const world::Obstacle& o : table->obstacles()) {
-            JINK_FUZZ_CHECK(o.shape.half.maxCoeff() >= 0.25F && o.shape.half.maxCoeff() < 1300.0F);
+            JINK_FUZZ_CHECK(o.shape.half.maxCoeff() >= 0.249F && o.shape.half.maxCoeff() < 1300.0F);
         }
     }
     return 0;
