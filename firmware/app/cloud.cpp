@@ -90,7 +90,7 @@ void CloudObstacles::remember(bool all_came) noexcept
         if (is_own && is_at_the_body(old)) {
             old.expires = scan_.stamp + view_.keep;
         }
-        if (!is_own || (old.expires >= scan_.stamp && is_hidden(old))) {
+        if (old.expires >= scan_.stamp && (!is_own || is_hidden(old))) {
             memory_[kept++] = old;
         }
     }

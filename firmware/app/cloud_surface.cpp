@@ -38,28 +38,23 @@ CloudMoments& CloudMoments::operator+=(const CloudMoments& other) noexcept
     return *this;
 }
 
+CloudMoments::Spread CloudMoments::spread() const noexcept
+{
+    return n > 0.0 ? Spread{xx - x * x / n, xy - x * y / n, yy - y * y / n} : Spread{};
+}
+
 float CloudMoments::direction() const noexcept
 {
-    if (!(n > 0.0)) {
-        return 0.0F;
-    }
-    const double a = xx - x * x / n;
-    const double b = xy - x * y / n;
-    const double c = yy - y * y / n;
-    const auto angle = static_cast<float>(0.5 * std::atan2(2.0 * b, a - c));
+    const Spread s = spread();
+    const auto angle = static_cast<float>(0.5 * std::atan2(2.0 * s.xy, s.xx - s.yy));
     return angle < 0.0F ? angle + kPi : angle;
 }
 
 double CloudMoments::residual() const noexcept
 {
-    if (!(n > 0.0)) {
-        return 0.0;
-    }
-    const double a = xx - x * x / n;
-    const double b = xy - x * y / n;
-    const double c = yy - y * y / n;
-    const double upright = 0.5 * (a + c - std::hypot(a - c, 2.0 * b));
-    const double level = zz - z * z / n;
+    const Spread s = spread();
+    const double upright = 0.5 * (s.xx + s.yy - std::hypot(s.xx - s.yy, 2.0 * s.xy));
+    const double level = n > 0.0 ? zz - z * z / n : 0.0;
     return std::max(0.0, std::min(upright, level));
 }
 

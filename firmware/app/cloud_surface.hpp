@@ -20,6 +20,11 @@ struct CloudMoments {
     [[nodiscard]] float direction() const noexcept;
     /// Sum of squared distances from the best upright or the level plane, whichever is closer [m2].
     [[nodiscard]] double residual() const noexcept;
+    /// Sums of the products of the level offsets from the mean [m2].
+    struct Spread {
+        double xx, xy, yy;
+    };
+    [[nodiscard]] Spread spread() const noexcept;
     /// Mean squared distance from the origin [m2].
     [[nodiscard]] double square_range() const noexcept;
 };

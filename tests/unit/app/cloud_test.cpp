@@ -343,6 +343,28 @@ TEST_F(Cloud, WhatCameWithinTheBodyIsNotForgotten)
     EXPECT_TRUE(obstacles().empty());
 }
 
+/// Sensors that have fallen silent take no memory from one that goes on.
+TEST_F(Cloud, ASilentSensorIsForgotten)
+{
+    std::vector<Vec3> all;
+    for (float azimuth = -175.0F; azimuth < 180.0F; azimuth += 10.0F) {
+        for (float elevation = -40.0F; elevation <= 40.0F; elevation += 10.0F) {
+            all.push_back(at(azimuth, elevation, 20));
+            all.push_back(at(azimuth, elevation, 50));
+        }
+    }
+    scan(all, 0, 1);
+    now = now + 2.0F;
+    view.stamp = now;
+    look();
+    scan({at(5, 2, 20)});
+    now = now + 0.1F;
+    view.stamp = now;
+    look();
+    scan({at(95, 2, 20)});
+    EXPECT_TRUE(is_covered(Vec3(100, 200, 50) + at(5, 2, 20))) << "remembered, though another sensor once saw much";
+}
+
 /// What a scan does not see stays where it was in the world, however the vehicle turns and moves meanwhile.
 TEST_F(Cloud, WhatIsNotSeenAgainStaysWhereItWas)
 {
