@@ -31,6 +31,14 @@ Vec3 unit_or_zero(const Vec3& direction) noexcept
 
 float signed_like(float magnitude, float sign) noexcept { return sign < 0.0F ? -magnitude : magnitude; }
 
+/// `from` pulled to within `radius` of `core`.
+Vec3 on_sphere(const Vec3& core, float radius, const Vec3& from) noexcept
+{
+    const Vec3 out = from - core;
+    const float distance = out.norm();
+    return distance <= radius ? from : Vec3(core + out * (radius / distance));
+}
+
 Vec3 hull_support(const Shape& shape, const Vec3& local) noexcept
 {
     assert(!shape.vertices.empty());
@@ -172,6 +180,27 @@ Vec3 support(const Shape& shape, const Vec3& direction) noexcept
     case ShapeKind::hull: break;
     }
     return shape.centre + shape.axes * local_support(shape, shape.axes.transpose() * unit);
+}
+
+Vec3 nearest_point(const Shape& shape, const Vec3& from) noexcept
+{
+    const Vec3 local = shape.axes.transpose() * (from - shape.centre);
+    switch (shape.kind) {
+    case ShapeKind::sphere: return on_sphere(shape.centre, shape.radius, from);
+    case ShapeKind::capsule: {
+        const float along = std::clamp(local.z(), -shape.half.z(), shape.half.z());
+        return on_sphere(shape.centre + shape.axes.col(2) * along, shape.radius, from);
+    }
+    case ShapeKind::box: return shape.centre + shape.axes * local.cwiseMax(-shape.half).cwiseMin(shape.half);
+    case ShapeKind::cylinder: {
+        const float aside = std::hypot(local.x(), local.y());
+        const float share = aside > shape.radius ? shape.radius / aside : 1.0F;
+        const float along = std::clamp(local.z(), -shape.half.z(), shape.half.z());
+        return shape.centre + shape.axes * Vec3(share * local.x(), share * local.y(), along);
+    }
+    case ShapeKind::hull: break;
+    }
+    return on_sphere(shape.centre, bounding_radius(shape), from);
 }
 
 float bounding_radius(const Shape& shape) noexcept

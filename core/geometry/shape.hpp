@@ -41,6 +41,12 @@ struct Shape {
 /// O(1), O(vertices) for a hull.
 [[nodiscard]] Vec3 support(const Shape& shape, const Vec3& direction) noexcept;
 
+/// Point of the solid that is nearest to `from` [m]; `from` itself where that lies inside.
+///
+/// Exact for all but hulls, which count as their bounding sphere: nearer than they are, never farther. O(1),
+/// O(vertices) for a hull.
+[[nodiscard]] Vec3 nearest_point(const Shape& shape, const Vec3& from) noexcept;
+
 /// Radius of the smallest sphere about `centre` that this function can prove to hold the solid [m].
 [[nodiscard]] float bounding_radius(const Shape& shape) noexcept;
 

@@ -231,7 +231,8 @@ Level NearThreats::against(const ThreatBits& bits, const Piece& piece, WorkBudge
     for (std::size_t word = 0; word < ThreatBits::kWords; ++word) {
         for (std::uint32_t left = bits.words[word]; left != 0 && level > kMet; left &= left - 1) {
             const std::size_t i = word * 32 + static_cast<std::size_t>(std::countr_zero(left));
-            if (!budget.spend(near_[i].shape != nullptr ? units::kReachSolid : units::kReachCheck)) {
+            const bool is_solid = near_[i].shape != nullptr || near_[i].is_cylinder;
+            if (!budget.spend(is_solid ? units::kReachSolid : units::kReachCheck)) {
                 return kBlocked;
             }
             level = std::min(level, against(near_[i], piece));
@@ -253,12 +254,18 @@ Level NearThreats::level(const Placed& placed, NodeIndex node, WorkBudget& budge
     }
     const NodeIndex parent = set.parent[node];
     const Seconds end = placed.time(node);
-    const Piece piece{placed.node(parent), placed.node(node), end - placed.period, end, bulge_};
+    const Vec3 to = placed.node(node);
     // At the root every threat may be near; the root has nine children at most.
     ThreatBits bits = parent == 0 ? all_ : of_cell_[set.end[parent]];
+    std::uint32_t any = 0;
     for (std::size_t word = 0; word < ThreatBits::kWords; ++word) {
         bits.words[word] |= of_cell_[set.end[node]].words[word];
+        any |= bits.words[word];
     }
+    if (any == 0) {
+        return in_airspace(to, end);
+    }
+    const Piece piece{placed.node(parent), to, end - placed.period, end, bulge_};
     return keep_near(piece, bits, budget) ? against(bits, piece, budget) : static_cast<Level>(AvoidanceRun::obstacles);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/quick_reject.hpp"
 #include "core/geometry/sweep.hpp"
 #include "core/reach/near.hpp"
 
@@ -34,7 +35,11 @@ bool touches_between(const NearThreat& cylinder, const Vec3& first, const Vec3& 
     const Vec3 way(last.x() - first.x(), last.y() - first.y(), 0.0F);
     const Vec3 begin = Vec3(first.x(), first.y(), 0.0F) + enters * way;
     const Vec3 half(cylinder.half.x(), cylinder.half.y(), 1.0F);
-    return geometry::contact_interval(half, {}, {begin, (leaves - enters) * way}, radius, 1.0F).has_value();
+    const geometry::QuickReject quick =
+        geometry::quick_reject(half, begin, Vec3(begin + (leaves - enters) * way), radius);
+    return quick == geometry::QuickReject::touches ||
+           (quick == geometry::QuickReject::unclear &&
+            geometry::contact_interval(half, {}, {begin, (leaves - enters) * way}, radius, 1.0F).has_value());
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace {
 
 float gap(const geometry::Shape& shape, const Vec3& own) noexcept
 {
-    return (shape.centre - own).norm() - geometry::bounding_radius(shape);
+    return (geometry::nearest_point(shape, own) - own).norm();
 }
 
 }  // namespace
@@ -62,7 +62,7 @@ ObstacleStatus ObstacleTable::place(const Obstacle& obstacle, TimePoint expires,
     const auto* const farthest =
         std::max_element(obstacles_.begin(), obstacles_.end(),
                          [&](const Obstacle& a, const Obstacle& b) { return gap(a.shape, own) < gap(b.shape, own); });
-    if (gap(obstacle.shape, own) >= gap(farthest->shape, own)) {
+    if (!(gap(obstacle.shape, own) < gap(farthest->shape, own))) {  // of numbers too large: not a number
         return ObstacleStatus::full;
     }
     erase(static_cast<std::size_t>(farthest - obstacles_.begin()));

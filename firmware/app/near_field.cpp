@@ -42,32 +42,7 @@ private:
     std::array<link::NearObject, kNearSectors> best_{};
 };
 
-/// `from` pulled to within `radius` of `core`.
-[[nodiscard]] Vec3 on_sphere(const Vec3& core, float radius, const Vec3& from) noexcept
-{
-    const Vec3 out = from - core;
-    const float distance = out.norm();
-    return distance <= radius ? from : Vec3(core + out * (radius / distance));
-}
-
 }  // namespace
-
-Vec3 nearest_point(const geometry::Shape& shape, const Vec3& from) noexcept
-{
-    using geometry::ShapeKind;
-    const Vec3 local = shape.axes.transpose() * (from - shape.centre);
-    switch (shape.kind) {
-    case ShapeKind::sphere: return on_sphere(shape.centre, shape.radius, from);
-    case ShapeKind::capsule: {
-        const float along = std::clamp(local.z(), -shape.half.z(), shape.half.z());
-        return on_sphere(shape.centre + shape.axes.col(2) * along, shape.radius, from);
-    }
-    case ShapeKind::box: return shape.centre + shape.axes * local.cwiseMax(-shape.half).cwiseMin(shape.half);
-    case ShapeKind::cylinder:
-    case ShapeKind::hull: break;
-    }
-    return on_sphere(shape.centre, geometry::bounding_radius(shape), from);
-}
 
 NearObjects find_near(const vehicle::VehicleState& own, std::span<const world::Track> tracks,
                       std::span<const world::Obstacle> obstacles, float k_sigma) noexcept
@@ -78,7 +53,7 @@ NearObjects find_near(const vehicle::VehicleState& own, std::span<const world::T
         nearest.add(offset, offset.norm() - track.radius - k_sigma * track.sigma_position);
     }
     for (const world::Obstacle& obstacle : obstacles) {
-        const Vec3 offset = nearest_point(obstacle.shape, own.position) - own.position;
+        const Vec3 offset = geometry::nearest_point(obstacle.shape, own.position) - own.position;
         const float distance = offset.norm();
         nearest.add(distance > 0.0F ? offset : Vec3(obstacle.shape.centre - own.position), distance);
     }

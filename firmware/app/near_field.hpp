@@ -19,12 +19,6 @@ inline constexpr float kNearLeast = 0.1F;
 
 using NearObjects = StaticVector<link::NearObject, kNearSectors>;
 
-/// Point of the solid that is nearest to `from` [m]; `from` itself where that lies inside.
-///
-/// Exact for spheres, boxes and capsules. Cylinders and hulls count as their bounding sphere: nearer than they are,
-/// never farther. O(1), O(vertices) for a hull.
-[[nodiscard]] Vec3 nearest_point(const geometry::Shape& shape, const Vec3& from) noexcept;
-
 /// The nearest thing in each sector within kNearReach, from a vehicle taken for level.
 ///
 /// @param own      position [m] and yaw count

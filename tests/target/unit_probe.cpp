@@ -5,25 +5,24 @@
 #include <cmath>
 #include <cstdint>
 
-#include <Eigen/Geometry>
-
 #include "core/avoid/common_stop.hpp"
 #include "core/avoid/fallback.hpp"
 #include "core/avoid/final_check.hpp"
 #include "core/avoid/give_way.hpp"
 #include "core/avoid/objective.hpp"
-#include "core/base/random.hpp"
 #include "core/base/work_units.hpp"
 #include "core/cost/tables.hpp"
 #include "core/geometric/curve.hpp"
 #include "core/geometry/convex.hpp"
 #include "core/orca/planner.hpp"
-#include "core/reach/vehicle_sets.hpp"
+#include "core/reach/planner.hpp"
+#include "core/reach/scan_picture.hpp"
 #include "core/world/obstacle_distance.hpp"
 #include "core/world/threat_set.hpp"
 #include "firmware/app/reach_sets.hpp"
 #include "firmware/vehicles/default/cost_tables.hpp"
 #include "tests/target/probe_io.hpp"
+#include "tests/target/unit_scene.hpp"
 #include "tests/target/window.hpp"
 
 namespace jink::target {
@@ -31,40 +30,6 @@ namespace {
 
 constexpr std::uint32_t kMagic = 0x4A555001;
 constexpr std::uint32_t kAmple = 100'000'000;
-
-/// As toolchain/report/units names them.
-enum class Work : std::uint32_t {
-    contact_closed,
-    contact_solid,
-    distance_closed,
-    distance_solid,
-    margin_closed,
-    margin_solid,
-    separation_tracks,
-    separation_spheres,
-    separation_solids,
-    conflict_tracks,
-    conflict_spheres,
-    conflict_solids,
-    check,
-    command,
-    fallback,
-    orca_tracks,
-    orca_spheres,
-    orca_solids,
-    orca_program,
-    curve_exact,
-    curve_table,
-    energy_exact,
-    energy_table,
-    objective_leg,
-    objective_route,
-    aircraft_look,
-    aircraft_command,
-    common_stop,
-    table_check,
-    count,
-};
 
 struct Request {
     std::uint32_t magic;
@@ -78,163 +43,25 @@ struct Answer {
     std::uint32_t units;
 };
 
-class UnitProbe {
+class UnitProbe : private UnitScene {
 public:
     std::uint32_t units_of(Work work, std::uint32_t seed) noexcept;
 
 private:
-    std::size_t below(std::size_t n) noexcept { return static_cast<std::size_t>(random_.below(n)); }
-    Vec3 within(float size) noexcept
-    {
-        const float x = random_.uniform(-size, size);
-        const float y = random_.uniform(-size, size);
-        return {x, y, random_.uniform(-size, size)};
-    }
-    Vec3 sized(float low, float high) noexcept
-    {
-        const float x = random_.uniform(low, high);
-        const float y = random_.uniform(low, high);
-        return {x, y, random_.uniform(low, high)};
-    }
-    Mat3 turned() noexcept
-    {
-        Mat3 axes;
-        axes.col(2) = (within(1.0F) + Vec3(0.0F, 0.0F, 1.5F)).normalized();
-        axes.col(0) = axes.col(2).cross(within(1.0F) + Vec3(1.5F, 0.0F, 0.0F)).normalized();
-        axes.col(1) = axes.col(2).cross(axes.col(0));
-        return axes;
-    }
-    geometry::Shape closed(const Vec3& at) noexcept
-    {
-        const float radius = random_.uniform(0.1F, 3.0F);
-        return below(2) == 0 ? geometry::make_sphere(at, radius)
-                             : geometry::make_capsule(at, at + within(6.0F), radius);
-    }
-    geometry::Shape upright(const Vec3& at) noexcept
-    {
-        return geometry::make_capsule(at, at + Vec3(0.0F, 0.0F, random_.uniform(0.0F, 9.0F)),
-                                      random_.uniform(0.1F, 3.0F));
-    }
-    geometry::Shape solid(const Vec3& at) noexcept;
-    void scene(Work work) noexcept;
-    void path() noexcept;
-    void wind() noexcept;
-    [[nodiscard]] world::Situation situation() const noexcept
-    {
-        return {{}, own_, limits_, airframe_, reference_, rules_};
-    }
     void geometry(Work work, WorkBudget& budget) noexcept;
     void curve(Work work, WorkBudget& budget) noexcept;
     void program(WorkBudget& budget) noexcept;
+    void scan() noexcept;
     [[nodiscard]] std::uint32_t tables(WorkBudget& budget) noexcept;
 
-    Random random_{0};
-    std::array<Point3, kMaxHullVertices> vertices_{};
-    vehicle::VehicleState own_;
-    world::FlightRules rules_;
-    vehicle::VehicleLimits limits_;
-    vehicle::Airframe airframe_;
-    world::Reference reference_;
-    path::Route route_;
-    world::Airspace airspace_;
     world::ThreatSet threats_;
-    StaticVector<world::Track, kMaxTracks> tracks_;
-    StaticVector<world::Obstacle, kMaxObstacles> obstacles_;
-    world::Manoeuvre manoeuvre_;
     orca::Planner orca_;
+    reach::Planner reach_{{.sets = &app::reach_sets()}};
+    reach::ScanPicture picture_;
     std::array<orca::HalfSpace, kMaxOrcaPlanes> planes_{};
     orca::Scratch<kMaxOrcaPlanes> scratch_;
     volatile float sink_ = 0.0F;
 };
-
-geometry::Shape UnitProbe::solid(const Vec3& at) noexcept
-{
-    switch (below(3)) {
-    case 0: {
-        const Vec3 half = sized(0.1F, 3.0F);
-        return geometry::make_box(at, half, turned());
-    }
-    case 1: return geometry::make_cylinder(at, at + within(5.0F), random_.uniform(0.1F, 3.0F));
-    default: break;
-    }
-    const std::size_t count = 4 + below(kMaxHullVertices - 3);
-    for (std::size_t i = 0; i < count; ++i) {
-        vertices_[i] = Point3::of(within(3.0F));
-    }
-    return geometry::make_hull({vertices_.data(), count}, at, turned());
-}
-
-void UnitProbe::path() noexcept
-{
-    manoeuvre_ = {};
-    manoeuvre_.kind = world::ManoeuvreKind::follow_path;
-    const std::size_t points = 2 + below(kMaxPathPoints - 1);
-    const Seconds step = random_.uniform(0.05F, 0.6F);
-    Vec3 at = own_.position;
-    Vec3 velocity = own_.velocity;
-    for (std::size_t i = 0; i < points; ++i) {
-        manoeuvre_.path.points.unchecked_push_back({at, velocity, step * static_cast<float>(i)});
-        at += velocity * step;
-        velocity = 0.9F * velocity + 0.1F * within(5.0F);
-    }
-}
-
-void UnitProbe::scene(Work work) noexcept
-{
-    own_ = {};
-    own_.position = within(50.0F);
-    own_.velocity = within(4.0F);
-    own_.sigma_position = below(2) == 0 ? 0.0F : 0.1F;
-    limits_ = {};
-    limits_.half_extents = sized(0.2F, 1.5F);
-    if (work == Work::fallback && below(3) == 0) {
-        limits_.kind = vehicle::VehicleKind::fixed_wing;
-    }
-    airspace_ = {};
-    airspace_.has_floor = below(2) == 0;
-    airspace_.has_ceiling = below(2) == 0;
-    airspace_.has_keep_in = below(2) == 0;
-    airspace_.floor = -60.0F;
-    airspace_.ceiling = 60.0F;
-    airspace_.keep_in_radius = 200.0F;
-    reference_ = world::Reference({own_.position, own_.position + within(50.0F), 5.0F});
-    tracks_.clear();
-    obstacles_.clear();
-    path();
-
-    const bool aircraft = work == Work::aircraft_look || work == Work::aircraft_command;
-    rules_.well_clear.radius = aircraft ? 610.0F : 0.0F;
-    const bool tracks = aircraft || work == Work::separation_tracks || work == Work::conflict_tracks ||
-                        work == Work::fallback || work == Work::orca_tracks || work == Work::objective_leg ||
-                        work == Work::objective_route || work == Work::common_stop;
-    const bool spheres = work == Work::separation_spheres || work == Work::conflict_spheres || work == Work::fallback ||
-                         work == Work::orca_spheres;
-    const bool solids = work == Work::separation_solids || work == Work::conflict_solids || work == Work::orca_solids;
-    const float spread = random_.uniform(1.0F, 60.0F);
-    for (std::size_t i = 0, n = tracks ? below(kMaxTracks + 1) : 0; i < n; ++i) {
-        world::Track track;
-        track.id = static_cast<std::uint32_t>(i);
-        track.position = own_.position + within(spread);
-        track.velocity = below(3) == 0 ? own_.velocity : within(6.0F);
-        track.radius = random_.uniform(0.2F, 4.0F);
-        track.sigma_velocity = below(2) == 0 ? 0.0F : 0.2F;
-        track.max_acceleration = below(3) == 0 ? 0.3F : 0.0F;
-        track.cooperative = below(2) == 0;
-        if (aircraft) {
-            track.manned = true;
-            track.position = own_.position + within(25.0F * spread).cwiseProduct(Vec3(1.0F, 1.0F, 0.1F));
-            track.velocity *= 10.0F;
-        }
-        tracks_.unchecked_push_back(track);
-    }
-    for (std::size_t i = 0, n = spheres ? below(kMaxObstacles + 1) : 0; i < n; ++i) {
-        obstacles_.unchecked_push_back({static_cast<world::ObstacleId>(i), upright(own_.position + within(spread))});
-    }
-    for (std::size_t i = 0, n = solids ? below(6) : 0; i < n; ++i) {
-        const Vec3 at = own_.position + within(spread);
-        obstacles_.unchecked_push_back({static_cast<world::ObstacleId>(i), below(4) == 0 ? closed(at) : solid(at)});
-    }
-}
 
 void UnitProbe::geometry(Work work, WorkBudget& budget) noexcept
 {
@@ -330,21 +157,21 @@ void UnitProbe::program(WorkBudget& budget) noexcept
     jink_window_end();
 }
 
-/// As many legs and arcs as a route may have.
-void UnitProbe::wind() noexcept
+/// A scan of a few to very many hits around.
+void UnitProbe::scan() noexcept
 {
-    route_.clear();
-    Vec3 from = own_.position;
-    while (route_.segments().size() < kMaxRouteSegments) {
-        const bool arc = below(3) != 0;
-        const Vec3 aside = Vec3(random_.uniform(-1.0F, 1.0F), random_.uniform(0.2F, 1.0F), 0.0F).normalized();
-        const path::RouteStatus added = arc ? route_.add_arc(from, from + random_.uniform(2.0F, 30.0F) * aside,
-                                                             Vec3::UnitZ(), random_.uniform(-3.0F, 3.0F))
-                                            : route_.add_leg(from, from + within(30.0F));
-        if (added == path::RouteStatus::ok) {
-            from = route_.at(route_.length()).position;
-        }
+    static_cast<void>(picture_.configure(app::reach_sets().segments.front().navigation->grid));
+    picture_.block_unseen(below(2) == 0);
+    reach::ScanStart start;
+    start.position = own_.position;
+    start.course = std::atan2(own_.velocity.y(), own_.velocity.x());
+    start.unit = random_.uniform(0.5F, 3.0F);
+    start.horizontal_pitch = start.vertical_pitch = 0.1F;
+    static_cast<void>(picture_.begin(start));
+    for (std::size_t i = 0, n = below(4000); i < n; ++i) {
+        picture_.add(within(30.0F));
     }
+    picture_.end();
 }
 
 /// From anywhere in a pass, one piece, as a step does.
@@ -396,6 +223,10 @@ std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
     world::Conflict conflict;
     const float margin = random_.uniform(0.0F, 2.0F);
     orca_.reset();
+    reach_.look_at(work == Work::reach_scan ? &picture_ : nullptr);
+    if (work == Work::reach_scan) {
+        scan();
+    }
     // What is counted is the work alone, without its choice.
     const auto counted = [](const auto& done) noexcept {
         jink_window_begin();
@@ -407,6 +238,7 @@ std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
     case Work::conflict_tracks:
     case Work::conflict_spheres:
     case Work::conflict_solids:
+    case Work::conflict_cylinders:
         sink_ = counted([&] { return world::main_conflict(s, way, rules_.lookahead, budget, conflict); }) ? 1.0F : 0.0F;
         break;
     case Work::check:
@@ -414,6 +246,7 @@ std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
         break;
     case Work::objective_leg:
     case Work::objective_route:
+    case Work::objective_solids:
         sink_ = counted([&] {
             return avoid::cost_of(s, manoeuvre_, {manoeuvre_.path.points.data(), manoeuvre_.path.points.size()},
                                   {margin, 1.0F, {world::ThreatKind::track, 0}}, budget)
@@ -439,6 +272,13 @@ std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
     case Work::orca_spheres:
     case Work::orca_solids:
         sink_ = counted([&] { return orca_.plan(s, budget, manoeuvre_); }) == world::PlanStatus::found ? 1.0F : 0.0F;
+        break;
+    case Work::reach_tracks:
+    case Work::reach_spheres:
+    case Work::reach_solids:
+    case Work::reach_cylinders:
+    case Work::reach_scan:
+        sink_ = counted([&] { return reach_.plan(s, budget, manoeuvre_); }) == world::PlanStatus::found ? 1.0F : 0.0F;
         break;
     case Work::fallback:
         sink_ = counted([&] { return avoid::choose_fallback(s, way, nullptr, settings, budget).margin; });

@@ -106,6 +106,35 @@ TEST_F(ObstacleTables, CapacityLessOneFullAndOneMore)
     EXPECT_EQ(table.update(sphere(1000, Vec3(11, 0, 0)), later, own), ObstacleStatus::updated);
 }
 
+/// A long wall far away is not near because half of its length is.
+TEST_F(ObstacleTables, AFullTableKeepsWhatIsNearestByItsSurface)
+{
+    const Obstacle wall{1, geometry::make_box(Vec3(0, 40, 0), Vec3(60, 0.2F, 10))};
+    const Obstacle pillar{2, geometry::make_capsule(Vec3(9, 0, -20), Vec3(9, 0, 20), 1.0F)};
+    const Obstacle tank{3, geometry::make_cylinder(Vec3(0, -45, 0), Vec3(0, -45, 3), 20.0F)};
+    ASSERT_EQ(table.update(wall, later, own), ObstacleStatus::created);
+    ASSERT_EQ(table.update(pillar, later, own), ObstacleStatus::created);
+    for (ObstacleId id = 10; table.obstacles().size() + 1 < kMaxObstacles; ++id) {
+        ASSERT_EQ(table.update(sphere(id, Vec3(11, 0, 0)), later, own), ObstacleStatus::created);
+    }
+    ASSERT_EQ(table.update(tank, later, own), ObstacleStatus::created);
+    EXPECT_EQ(table.update(sphere(5, Vec3(12, 0, 0)), later, own), ObstacleStatus::replaced) << "the wall, at 39.8 m";
+    EXPECT_EQ(table.update(sphere(6, Vec3(12, 0, 0)), later, own), ObstacleStatus::replaced) << "the tank, at 25 m";
+    EXPECT_EQ(table.update(wall, later, own), ObstacleStatus::full);
+    EXPECT_EQ(table.obstacles()[0].id, pillar.id);
+}
+
+/// Numbers too large to be subtracted displace nothing.
+TEST_F(ObstacleTables, AFullTableRefusesWhatIsBeyondAllNumbers)
+{
+    for (ObstacleId id = 10; table.obstacles().size() < kMaxObstacles; ++id) {
+        ASSERT_EQ(table.update(sphere(id, Vec3(11, 0, 0)), later, own), ObstacleStatus::created);
+    }
+    EXPECT_EQ(table.update(sphere(1, Vec3(3e38F, 3e38F, 0)), later, own), ObstacleStatus::full);
+    EXPECT_EQ(table.update({2, geometry::make_box(Vec3(3e38F, 3e38F, 3e38F), Vec3::Ones())}, later, own),
+              ObstacleStatus::full);
+}
+
 /// The smallest possible id is placed first, also in an empty table.
 TEST_F(ObstacleTables, TheSmallestIdComesFirst)
 {
