@@ -66,7 +66,8 @@ public:
         const world::Separation least =
             world::least_separation(rounded_ ? inner_ : s_, flight_, horizon_, budget_, s_.rules.escape,
                                     {cut + corner, world::kSeparationCap, nearest_, uncertainty_});
-        const float margin = least.margin - corner;
+        // No worse than a command that is not checked at all for want of units: of equals the first one stays.
+        const float margin = std::max(least.margin - corner, -world::kSeparationCap);
         nearest_ = margin < cut || nearest_.kind == world::ThreatKind::none ? least.against : nearest_;
         return margin;
     }

@@ -25,6 +25,7 @@ inline constexpr std::uint32_t kCapsuleQuery = 28;  ///< against a capsule of an
 inline constexpr std::uint32_t kSolidQuery = 11;    ///< against any other solid, before the first support call
 /// One turn of libccd's loops: a support call of either solid and libccd's work on both results, in doubles.
 inline constexpr std::uint32_t kExactTurn = kSoftDoubles ? 330 : 12;
+inline constexpr std::uint32_t kBoxDepth = 3;    ///< a box along a segment against a box, before any query
 inline constexpr std::uint32_t kSearchTurn = 8;  ///< the same of the distance search, in floats
 /// Additional cost of each such turn for a hull.
 constexpr std::uint32_t hull_units(std::size_t vertices) noexcept

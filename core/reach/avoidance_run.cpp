@@ -18,7 +18,8 @@ using world::Situation;
 static_assert(world::AvoidanceMethod<Planner>);
 
 /// Courses of a multirotor that hardly moves, relative to the nominal path [rad].
-constexpr std::array<float, Planner::kHeadings> kTurns{0.0F, kPi / 3.0F, -kPi / 3.0F};
+constexpr std::array<float, Planner::kHeadings> kTurns{0.0F, kPi / 3.0F, -kPi / 3.0F, 2.0F * kPi / 3.0F,
+                                                       -2.0F * kPi / 3.0F};
 /// The goal lies just beyond the grid [its range].
 constexpr float kGoalShare = 1.02F;
 /// Time steps of the stop at the end of a trajectory.

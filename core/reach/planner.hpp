@@ -47,7 +47,7 @@ struct Report {
 /// near threats + cells * threats) for each course and set.
 class Planner {
 public:
-    static constexpr std::size_t kHeadings = 3;
+    static constexpr std::size_t kHeadings = 5;
     /// Ways that keep FlightRules::clearance come first.
     static constexpr world::MethodTraits kTraits{
         .id = 2, .reactive = false, .keeps_clearance = true, .needs_sets = true};

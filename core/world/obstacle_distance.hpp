@@ -22,8 +22,11 @@ inline constexpr float kOverlapResolution = 1.0F / 64.0F;
 ///   kObstacleReach; not below 0 unless what is left is within the rounding, so that a start that is clear is never
 ///   taken for one inside;
 /// * within `extra`: the same, below 0;
-/// * overlap: minus `extra` and the part of the box (in terms of its largest half extent) that has to be taken off
-///   until it is clear, at most kOverlapResolution of that half extent too much.
+/// * overlap with a box: minus `extra` and how far the own box would have to be moved aside where it is deepest, for
+/// the
+///   whole way at once; exact for an upright box and no way. However deep the own box is, deeper counts as worse;
+/// * overlap with another shape: minus `extra` and the part of the own box (in terms of its largest half extent) that
+///   has to be taken off until it is clear, at most kOverlapResolution of that half extent too much.
 /// A budget that runs out gives the worst value. O(1), O(log) support queries otherwise.
 [[nodiscard]] float obstacle_margin(const Vec3& half, const Vec3& from, const Vec3& to, const geometry::Shape& shape,
                                     WorkBudget& budget, float extra = 0.0F) noexcept;

@@ -215,6 +215,40 @@ TEST(ChooseFallback, WithoutABudgetItBrakes)
     EXPECT_LT(chosen.margin, 0.0F);
 }
 
+/// A wall across the way as an obstacle that reaches nearer than it is, as far as the vehicle: all commands begin in
+/// it.
+Flight in_a_thick_wall(float depth)
+{
+    Flight f;
+    f.scene.own.velocity = Vec3(4, 0, 0);
+    f.scene.obstacle(geometry::make_box(f.scene.own.position + Vec3(8.0F - depth, 0, 0), Vec3(8, 15, 30)));
+    return f;
+}
+
+// Regression: any depth counted as the same, and a vehicle went on into the wall.
+TEST(ChooseFallback, InAnObstacleItTakesTheShortWayOut)
+{
+    for (const float depth : {0.0F, 0.3F, 0.6F, 1.0F, 1.4F}) {
+        const Fallback chosen = fallback(in_a_thick_wall(depth));
+        EXPECT_TRUE(chosen.kind == ManoeuvreKind::brake || chosen.command.x() < 0.0F) << depth;
+    }
+}
+
+TEST(ChooseFallback, WithAnyBudgetItGoesNoDeeperIntoAnObstacle)
+{
+    for (const float depth : {0.0F, 0.6F, 1.2F}) {
+        const Flight f = in_a_thick_wall(depth);
+        WorkBudget ample(kPlenty);
+        const Situation s = f.scene.situation();
+        static_cast<void>(choose_fallback(s, world::way_of(s), nullptr, Settings{}, ample));
+        const Fallback ahead{ManoeuvreKind::velocity, Vec3(5, 0, 0), -1.0F};
+        for (std::uint32_t n = 0; n <= ample.spent(); n += 11) {
+            ASSERT_LE(fallback(f, nullptr, n).command.x(), 0.0F) << n << " units, " << depth;
+        }
+        EXPECT_LE(fallback(f, &ahead).command.x(), 0.0F) << "nor goes on into it: " << depth;
+    }
+}
+
 TEST(ChooseFallback, AFixedWingsMarginIsWhatItsTurnKeeps)
 {
     Flight f;

@@ -2,6 +2,8 @@
 // Conflicts and margins of obstacles at the edges of their contracts.
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include <gtest/gtest.h>
 
 #include "core/base/work_units.hpp"
@@ -142,11 +144,31 @@ TEST(ObstacleMarginEdges, WithinItsClearanceItIsWhatIsLacking)
 /// Overlapping by 0.25 m of the box's metre: so much has to be taken off, and the clearance with it.
 TEST(ObstacleMarginEdges, OverlappingItIsTheShareOfTheBoxAndTheClearance)
 {
-    const geometry::Shape wall = geometry::make_box(Vec3(1, 5.75F, 0), Vec3(30, 5, 30));
+    const geometry::Shape wall = geometry::make_cylinder(Vec3(1, 0.75F, 0), Vec3(1, 9.75F, 0), 30.0F);
     EXPECT_LE(margin_to(wall, 0.0F), -0.25F);
     EXPECT_GE(margin_to(wall, 0.0F), -0.25F - kOverlapResolution);
     EXPECT_LE(margin_to(wall, 0.6F), -0.85F);
     EXPECT_GE(margin_to(wall, 0.6F), -0.85F - kOverlapResolution);
+}
+
+/// In a box it is the way out, however deep.
+TEST(ObstacleMarginEdges, OverlappingABoxItIsTheDepthAndTheClearance)
+{
+    for (const float depth : {0.25F, 1.5F, 4.0F, 6.0F}) {
+        const geometry::Shape wall = geometry::make_box(Vec3(1, 6.0F - depth, 0), Vec3(30, 5, 30));
+        EXPECT_NEAR(margin_to(wall, 0.0F), -depth, 1e-4F);
+        EXPECT_NEAR(margin_to(wall, 0.6F), -depth - 0.6F, 1e-4F);
+    }
+    // Straight through: as deep as it is in the middle.
+    EXPECT_NEAR(margin_to(geometry::make_box(Vec3(1, 0, 0), Vec3(0.1F, 50, 50)), 0.0F), -1.1F, 1e-4F);
+}
+
+TEST(ObstacleMarginEdges, TouchingABoxAtItsEdgeIsContact)
+{
+    const Mat3 turned = Eigen::AngleAxisf(0.25F * kPi, Vec3::UnitZ()).toRotationMatrix();
+    const float reach = 1.0F + 2.0F * std::sqrt(2.0F);
+    EXPECT_LT(margin_to(geometry::make_box(Vec3(2.0F + reach - 1e-3F, 0, 0), Vec3(2, 2, 2), turned), 0.0F), 0.0F);
+    EXPECT_GE(margin_to(geometry::make_box(Vec3(2.0F + reach + 1e-3F, 0, 0), Vec3(2, 2, 2), turned), 0.0F), 0.0F);
 }
 
 TEST(ObstacleMarginEdges, WithoutABudgetASphereIsAsDeepAsCanBe)

@@ -318,10 +318,10 @@ TEST(PlaceAsAWay, HasNoConflictWithWhatItIsInside)
     EXPECT_FALSE(no_more.exhausted());
 }
 
-/// Of a box with unequal sides the share that overlaps is one of the largest half extent.
+/// Of a box with unequal sides the share that overlaps a solid that is no box is one of the largest half extent.
 TEST(ObstacleMarginTies, AnOverlapIsAShareOfTheLargestSide)
 {
-    const geometry::Shape wall = geometry::make_box(Vec3(1, 5.75F, 0), Vec3(30, 5, 30));
+    const geometry::Shape wall = geometry::make_cylinder(Vec3(1, 0.75F, 0), Vec3(1, 9.75F, 0), 30.0F);
     WorkBudget budget(kPlenty);
     // A quarter of the side of a metre; the same share of three metres.
     const float margin = obstacle_margin(Vec3(0.5F, 1, 3), Vec3::Zero(), Vec3(2, 0, 0), wall, budget);
@@ -332,7 +332,7 @@ TEST(ObstacleMarginTies, AnOverlapIsAShareOfTheLargestSide)
 /// Without a clearance there is one question less.
 TEST(ObstacleMarginTies, AnOverlapWithoutAClearanceIsAskedForOnce)
 {
-    const geometry::Shape wall = geometry::make_box(Vec3(1, 5.75F, 0), Vec3(30, 5, 30));
+    const geometry::Shape wall = geometry::make_cylinder(Vec3(1, 0.75F, 0), Vec3(1, 9.75F, 0), 30.0F);
     const auto cost = [&](float extra) {
         WorkBudget budget(kPlenty);
         EXPECT_LT(obstacle_margin(Vec3::Ones(), Vec3::Zero(), Vec3(2, 0, 0), wall, budget, extra), 0.0F);
@@ -351,7 +351,7 @@ TEST(ObstacleMarginTies, WithinTheClearanceOneQuestionIsEnough)
     static_cast<void>(geometry::swept_box_distance(Vec3::Ones(), Vec3::Zero(), Vec3(2, 0, 0), wall, kObstacleReach,
                                                    kObstacleResolution, parts));
     static_cast<void>(geometry::swept_box_contact(Vec3::Ones(), Vec3::Zero(), Vec3(2, 0, 0), wall, 0.9F, parts));
-    EXPECT_EQ(whole.spent(), parts.spent());
+    EXPECT_EQ(whole.spent(), parts.spent() + units::kBoxDepth);
 }
 
 }  // namespace
