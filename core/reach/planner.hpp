@@ -36,8 +36,8 @@ struct Report {
 /// to the goal is chosen (Gomola 6.7). The goal is the point of the reference as far ahead as the grid reaches.
 ///
 /// The navigation set is tried first, then the emergency set. A multirotor that hardly moves may begin in any
-/// direction: along the nominal path, then to either side. A trajectory at whose end the vehicle could not stop (a
-/// fixed wing flies on) is discarded, and the next best is taken.
+/// direction: along the nominal path, then to either side, then backwards to either side. A trajectory at whose end the
+/// vehicle could not stop (a fixed wing flies on) is discarded, and the next best is taken.
 ///
 /// Plans even without a conflict ahead. Unlike Gomola's planner, this one never accepts a conflict with an
 /// intruder or with closed airspace (a cylinder's body): such a trajectory would not pass the final check. A cylinder's

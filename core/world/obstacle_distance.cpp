@@ -37,7 +37,8 @@ float overlap(const Vec3& half, const Vec3& from, const Vec3& to, const geometry
 /// What the own box, anywhere between `from` and `to`, overlaps of a box at most along each of the six axes of both;
 /// the least of them, below 0 where one of these axes keeps both apart all the way. Of two upright boxes at rest it is
 /// how far one has to be moved until they are apart.
-float depth_in_box(const Vec3& half, const Vec3& from, const Vec3& to, const geometry::Shape& box) noexcept
+[[gnu::noinline]] float depth_in_box(const Vec3& half, const Vec3& from, const Vec3& to,
+                                     const geometry::Shape& box) noexcept
 {
     const auto least = [](const Vec3& sizes, const Vec3& a, const Vec3& b) {
         const Vec3 near = a.cwiseMin(b).cwiseMax(-a.cwiseMax(b)).cwiseMax(0.0F);

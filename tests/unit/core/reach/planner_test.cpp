@@ -195,7 +195,7 @@ TEST_F(PlannerTest, ASlowWingKeepsItsCourse)
     EXPECT_EQ(report().headings, 1);
 }
 
-TEST_F(PlannerTest, StandingItTriesTheLeftThenTheRight)
+TEST_F(PlannerTest, StandingItTriesTheLeftThenTheRightThenBackwards)
 {
     test::SmallTree ahead(kGrid);
     ahead.chain(Movement::straight, 4, 1024);
@@ -211,8 +211,15 @@ TEST_F(PlannerTest, StandingItTriesTheLeftThenTheRight)
     EXPECT_EQ(report().headings, 3);
     EXPECT_NEAR((out.side - Vec3(0.0F, -1.0F, 0.0F)).norm(), 0.0F, 1e-3F);
     add_sphere(Vec3(0.575F, -0.996F, 30.0F), 0.2F);
+    ASSERT_EQ(plan(), PlanStatus::found);
+    EXPECT_NEAR(course(), 2.0F * kPi / 3.0F, 1e-3F);
+    EXPECT_EQ(report().headings, 4);
+    add_sphere(Vec3(-0.575F, 0.996F, 30.0F), 0.2F);
+    ASSERT_EQ(plan(), PlanStatus::found);
+    EXPECT_NEAR(course(), -2.0F * kPi / 3.0F, 1e-3F);
+    add_sphere(Vec3(-0.575F, -0.996F, 30.0F), 0.2F);
     EXPECT_EQ(plan(), PlanStatus::none_available);
-    EXPECT_EQ(report().headings, 3);
+    EXPECT_EQ(report().headings, 5);
 }
 
 TEST_F(PlannerTest, StandingItTurnsFromTheCourseOfItsWay)
