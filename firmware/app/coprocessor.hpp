@@ -164,6 +164,15 @@ public:
     [[nodiscard]] const Vec3& home() const noexcept { return picture_.home(); }
     /// As a plan at `now` has them, until the next step.
     [[nodiscard]] std::span<const world::Track> tracks(TimePoint now) noexcept { return picture_.tracks(now); }
+    /// As the last step decided with them, until the next step: those of a map follow the others.
+    [[nodiscard]] std::span<const world::Obstacle> obstacles() const noexcept { return picture_.obstacles(); }
+    /// Those of them that are not of a map.
+    [[nodiscard]] std::span<const world::Obstacle> sensed_obstacles() const noexcept { return picture_.sensed(); }
+    /// Closed areas, as the last step decided with them, until the next step.
+    [[nodiscard]] std::span<const world::Cylinder> closed_areas() const noexcept
+    {
+        return autopilot_.is_heard() ? picture_.constraints().cylinders() : std::span<const world::Cylinder>();
+    }
 
 private:
     void take_inbox(TimePoint now) noexcept;

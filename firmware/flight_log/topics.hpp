@@ -179,6 +179,8 @@ enum class TopicId : std::uint16_t {
     avoid_counters,
     log,
     nominal,
+    obstacle,
+    area,
     hal
 };
 

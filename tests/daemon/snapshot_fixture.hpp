@@ -13,9 +13,11 @@
 
 namespace jink::livepage {
 
+using flightlog::AreaTopic;
 using flightlog::CandidateTopic;
 using flightlog::DecisionTopic;
 using flightlog::NominalTopic;
+using flightlog::ObstacleTopic;
 using flightlog::OwnTopic;
 using flightlog::StepTopic;
 using flightlog::TopicId;
@@ -99,6 +101,55 @@ protected:
         nominal.segment = segment;
         nominal.on_route = path == 0;
         take(TopicId::nominal, nominal);
+    }
+    /// A step that knows so many obstacles and closed areas.
+    void take_knowing(double seconds, std::size_t obstacles, std::size_t areas)
+    {
+        StepTopic step;
+        step.timestamp = kStart + static_cast<std::uint64_t>(seconds * 1e6);
+        step.obstacles = static_cast<std::uint16_t>(obstacles);
+        step.areas = static_cast<std::uint16_t>(areas);
+        take(TopicId::step, step);
+    }
+    /// A box, the number-th obstacle of a round.
+    static ObstacleTopic box(double seconds, std::size_t number, std::size_t obstacles, std::size_t areas)
+    {
+        ObstacleTopic box;
+        box.timestamp = box.known = kStart + static_cast<std::uint64_t>(seconds * 1e6);
+        box.id = 100 + static_cast<std::uint32_t>(number);
+        box.centre = {static_cast<float>(number), 2.0F, 3.0F};
+        box.half = {0.5F, 1.0F, 2.0F};
+        box.turn = {1.0F, 0.0F, 0.0F, 0.0F};
+        box.uncertainty = 0.25F;
+        box.number = static_cast<std::uint16_t>(number);
+        box.obstacles = static_cast<std::uint16_t>(obstacles);
+        box.areas = static_cast<std::uint16_t>(areas);
+        box.kind = 1;
+        return box;
+    }
+    static AreaTopic area(double seconds, std::size_t number, std::size_t obstacles, std::size_t areas)
+    {
+        AreaTopic area;
+        area.timestamp = area.known = kStart + static_cast<std::uint64_t>(seconds * 1e6);
+        area.centre = {10.0F, static_cast<float>(number)};
+        area.velocity = {0.0F, 3.0F};
+        area.radius = 12.0F;
+        area.bottom = -5.0F;
+        area.top = 120.0F;
+        area.margin = 6.0F;
+        area.number = static_cast<std::uint16_t>(number);
+        area.obstacles = static_cast<std::uint16_t>(obstacles);
+        area.areas = static_cast<std::uint16_t>(areas);
+        return area;
+    }
+    void take_round(double seconds, std::size_t obstacles, std::size_t areas)
+    {
+        for (std::size_t i = 0; i < obstacles; ++i) {
+            take(TopicId::obstacle, box(seconds, i, obstacles, areas));
+        }
+        for (std::size_t i = 0; i < areas; ++i) {
+            take(TopicId::area, area(seconds, i, obstacles, areas));
+        }
     }
     void take_own(double seconds, const flightlog::Xyz& at)
     {

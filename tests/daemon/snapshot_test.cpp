@@ -122,10 +122,11 @@ TEST_F(SnapshotTest, AnyMessagesGiveJson)
     const std::uint64_t seed = std::random_device{}();
     std::mt19937_64 random(seed);
     constexpr std::string_view kTypes = "DDDDLPOSX";
-    constexpr std::array<std::size_t, 6> kSizes{
+    constexpr std::array<std::size_t, 8> kSizes{
         2 + flightlog::kBytesOf<StepTopic>,      2 + flightlog::kBytesOf<OwnTopic>,
         2 + flightlog::kBytesOf<TrackTopic>,     2 + flightlog::kBytesOf<DecisionTopic>,
-        2 + flightlog::kBytesOf<CandidateTopic>, 2 + flightlog::kBytesOf<NominalTopic>};
+        2 + flightlog::kBytesOf<CandidateTopic>, 2 + flightlog::kBytesOf<NominalTopic>,
+        2 + flightlog::kBytesOf<ObstacleTopic>,  2 + flightlog::kBytesOf<AreaTopic>};
     constexpr std::size_t kBools = 7;  // at the end of a step's topic
     for (int i = 0; i < 20'000; ++i) {
         std::vector<std::byte> bytes(random() % 2 == 0 ? 10 + random() % 200 : kSizes[random() % kSizes.size()]);
@@ -136,7 +137,7 @@ TEST_F(SnapshotTest, AnyMessagesGiveJson)
             bytes[k] &= std::byte{1};
         }
         if (random() % 4 != 0) {
-            bytes[0] = static_cast<std::byte>(random() % 10);
+            bytes[0] = static_cast<std::byte>(random() % 12);
             bytes[1] = std::byte{0};
         }
         take(static_cast<ulog::Type>(kTypes[random() % kTypes.size()]), bytes);

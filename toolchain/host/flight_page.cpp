@@ -120,6 +120,36 @@ Json json(const std::vector<PageNominal>& nominal)
             {"points", json(points, kMetres)}};
 }
 
+/// Columns of one value for each shape.
+Json json(const std::vector<PageShape>& shapes)
+{
+    constexpr double kTurn = 1e-4;
+    const auto column = [&](double step, auto value_of) {
+        Column values;
+        values.reserve(shapes.size());
+        for (const PageShape& shape : shapes) {
+            values.push_back(value_of(shape));
+        }
+        return json(values, step);
+    };
+    const auto columns = [&](double step, auto member) {
+        Json all = Json::array();
+        for (std::size_t k = 0; k < (PageShape().*member).size(); ++k) {
+            all.push_back(column(step, [&](const PageShape& shape) { return (shape.*member)[k]; }));
+        }
+        return all;
+    };
+    return {{"from", column(kSeconds, [](const PageShape& s) { return s.from; })},
+            {"until", column(kSeconds, [](const PageShape& s) { return s.until; })},
+            {"kind", column(1.0, [](const PageShape& s) { return static_cast<double>(s.kind); })},
+            {"of_map", column(1.0, [](const PageShape& s) { return s.of_map ? 1.0 : 0.0; })},
+            {"radius", column(kMetres, [](const PageShape& s) { return s.radius; })},
+            {"centre", columns(kMetres, &PageShape::centre)},
+            {"half", columns(kMetres, &PageShape::half)},
+            {"turn", columns(kTurn, &PageShape::turn)},
+            {"velocity", columns(kMetres, &PageShape::velocity)}};
+}
+
 Json json(const PageFlight& flight)
 {
     Json phases = Json::array();
@@ -162,7 +192,8 @@ Json json(const PageFlight& flight)
             {"events", events},
             {"decisions", decisions},
             {"threats", threats},
-            {"nominal", json(flight.nominal)}};
+            {"nominal", json(flight.nominal)},
+            {"shapes", json(flight.shapes)}};
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <limits>
 #include <stdexcept>
@@ -16,8 +17,6 @@
 namespace jink::host {
 
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-/// Values beyond are not drawn [m, s, m/s].
-inline constexpr double kMaxShown = 1e7;
 
 /// An input that gives no page; the text names file, place and what was expected.
 struct BadFlight : std::runtime_error {
@@ -29,6 +28,7 @@ using Column = std::vector<double>;
 using flightlog::Columns3;
 using flightlog::Fate;
 using flightlog::fate_of_unchecked;
+using flightlog::kMaxShown;
 
 struct PageCandidate {
     Fate fate = Fate::budget_spent;
@@ -47,6 +47,21 @@ struct PageNominal {
     double time = 0.0;
     bool on_route = false;  ///< as the link reports it; else from the measured motion
     Columns3 points;
+};
+
+/// An obstacle or a closed area as jink believed it, while it did.
+struct PageShape {
+    /// A geometry::ShapeKind, or this.
+    static constexpr unsigned kArea = 5;
+    double from = 0.0;
+    double until = 0.0;
+    unsigned kind = 0;
+    bool of_map = false;
+    std::array<double, 3> centre{};   ///< at `from`
+    std::array<double, 3> half{};     ///< as in flightlog::ObstacleTopic; of an area: z
+    std::array<double, 4> turn{1.0};  ///< w, x, y, z: from its own axes into the world's
+    double radius = 0.0;
+    std::array<double, 2> velocity{};  ///< of an area: east, north
 };
 
 struct PageEvent {
@@ -97,6 +112,7 @@ struct PageFlight {
     std::vector<PageDecision> decisions;
     std::vector<PageThreat> threats;
     std::vector<PageNominal> nominal;  ///< in order of time; of a flight log
+    std::vector<PageShape> shapes;     ///< in order of `from`; of a flight log
 };
 
 /// One input: its flights, in its order.

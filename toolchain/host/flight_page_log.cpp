@@ -13,6 +13,7 @@
 #include "toolchain/host/log_fields.hpp"
 #include "toolchain/host/log_summary.hpp"
 #include "toolchain/host/nominal_log.hpp"
+#include "toolchain/host/shape_log.hpp"
 
 namespace jink::host {
 namespace {
@@ -113,6 +114,7 @@ private:
     std::map<unsigned, std::size_t> decision_of_;  // number in the log: index in flight_.decisions
     std::map<unsigned, Curve> curve_of_;
     NominalLog nominal_;
+    ShapeLog shapes_;
     double lookahead_ = 8.0;
     unsigned control_ = 0xFFFF;
 };
@@ -140,6 +142,7 @@ void LogFlight::note_step(const LogFields& step, double time)
     at.command = step.code("wants_control") != 0 ? step.vector("velocity") : unknown();
     at.work = step.number("work");
     steps_.push_back(at);
+    shapes_.note_step(time, step.code("obstacles") > 0 || step.code("areas") > 0);
     if (control != control_) {
         control_ = control;
         flight_.phases.push_back(
@@ -236,6 +239,10 @@ void LogFlight::note_data(const ulog::Format& format, std::span<const std::byte>
         note_candidate(fields, *time);
     } else if (format.name == "jink_nominal") {
         nominal_.note(fields, *time);
+    } else if (format.name == "jink_obstacle") {
+        shapes_.note_obstacle(fields, *time);
+    } else if (format.name == "jink_area") {
+        shapes_.note_area(fields, *time);
     }
 }
 
@@ -337,6 +344,7 @@ PageFlight LogFlight::page()
     settle_fates();
     sample(flight_);
     add_tracks(flight_);
+    flight_.shapes = shapes_.shapes();
     flight_.nominal = nominal_.curves(
         [&](double time) {
             const OwnAt* const own = latest(own_, time, kTrackLife);

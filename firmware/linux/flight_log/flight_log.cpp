@@ -204,6 +204,21 @@ void FlightLog::put_nominal(const app::NominalPaths& paths, TimePoint now) noexc
     }
 }
 
+/// The next portion of the round, or of a new one.
+void FlightLog::put_shapes(const app::Coprocessor& coprocessor, TimePoint now) noexcept
+{
+    if (shapes_.is_due(now)) {
+        shapes_.begin(coprocessor.obstacles(), coprocessor.sensed_obstacles().size(), coprocessor.closed_areas(), now);
+    }
+    for (std::size_t i = 0; i < ShapeRound::kPerStep && shapes_.goes_on(); ++i) {
+        if (shapes_.is_next_area()) {
+            put(TopicId::area, shapes_.next_area(now));
+        } else {
+            put(TopicId::obstacle, shapes_.next_obstacle(now));
+        }
+    }
+}
+
 template <class T>
 void FlightLog::put_counters_of(TopicId id, std::span<const Counter<T>> counters, const T& diagnostics,
                                 TimePoint now) noexcept
@@ -322,6 +337,10 @@ void FlightLog::end(const app::StepReport& report, app::Coprocessor& coprocessor
             put_nominal(coprocessor.nominal_paths(), began);
         }
         tracks_due_ = began.us + kTrackPeriod;
+    }
+    const bool knows_shapes = (report.obstacles | report.cylinders) != 0;
+    if (shapes_.goes_on() || (knows_shapes && shapes_.is_due(began))) [[unlikely]] {
+        put_shapes(coprocessor, began);
     }
     if (began.us >= counters_due_) {
         put_counters(coprocessor, began);

@@ -9,6 +9,7 @@
 #include "firmware/app/coprocessor.hpp"
 #include "firmware/linux/flight_log/output.hpp"
 #include "firmware/linux/flight_log/recording_ports.hpp"
+#include "firmware/linux/flight_log/shape_round.hpp"
 #include "firmware/linux/flight_log/topics.hpp"
 #include "firmware/linux/param_file.hpp"
 
@@ -21,7 +22,7 @@ namespace jink::flightlog {
 /// The control loop's side of a flight log: composes what a step did and gives it to an output. Never waits, and
 /// allocates nothing after its construction.
 ///
-/// Memory: the largest record of a step (Limits) and 24 KiB.
+/// Memory: the largest record of a step (Limits) and 36 KiB.
 class FlightLog {
 public:
     struct Limits {
@@ -84,6 +85,7 @@ private:
     void put_tracks(app::Coprocessor& coprocessor, TimePoint now) noexcept;
     void put_nominal(const app::NominalPaths& paths, TimePoint now) noexcept;
     void put_path(const world::Reference& reference, std::uint8_t path, bool on_route, TimePoint now) noexcept;
+    [[gnu::cold]] void put_shapes(const app::Coprocessor& coprocessor, TimePoint now) noexcept;
     void put_counters(const app::Coprocessor& coprocessor, TimePoint now) noexcept;
     template <class T>
     void put_counters_of(TopicId id, std::span<const Counter<T>> counters, const T& diagnostics,
@@ -112,6 +114,7 @@ private:
     std::int64_t own_stamp_ = -1;
     std::int64_t tracks_due_ = 0;
     std::int64_t counters_due_ = 0;
+    ShapeRound shapes_;
     /// Of the step before: their changes are logged as texts.
     struct Last {
         link::SystemState state = app::StepReport().state;

@@ -15,6 +15,9 @@
 
 namespace jink::flightlog {
 
+/// Values beyond are not drawn [m, s, m/s].
+inline constexpr double kMaxShown = 1e7;
+
 /// Points, column by column [m].
 struct Columns3 {
     std::vector<double> x, y, z;

@@ -26,7 +26,9 @@ std::vector<std::string> topic_formats()
                                      format_of("jink_app_counters", app_counters()),
                                      format_of("jink_avoid_counters", avoid_counters()),
                                      std::string(LogTopic::kFormat),
-                                     std::string(NominalTopic::kFormat)};
+                                     std::string(NominalTopic::kFormat),
+                                     std::string(ObstacleTopic::kFormat),
+                                     std::string(AreaTopic::kFormat)};
     for (const std::uint16_t size : kHalSizes) {
         formats.push_back("jink_hal_" + std::to_string(size) +
                           ":uint64_t timestamp;uint32_t sequence;uint16_t length;uint16_t flags;uint8_t[" +

@@ -7,7 +7,8 @@
 #include "firmware/flight_log/topics.hpp"
 #include "firmware/linux/flight_log/ulog.hpp"
 
-// What the log of jinkd has beside the topics of boards: nominal paths, and records of its ports.
+// What the log of jinkd has beside the topics of boards: nominal paths, obstacles, closed areas, and records of its
+// ports.
 
 namespace jink::flightlog {
 
@@ -28,6 +29,47 @@ struct NominalTopic {
     std::uint8_t segment = 0;
     std::uint8_t segments = 0;
     bool on_route = false;  ///< as the link reports it; else the measured motion
+};
+
+/// An obstacle, or a part of a map, of a round: what was known after one step, at `known`. The solid stands about
+/// `centre`, turned by the unit quaternion `turn` (w, x, y, z) from its own axes into the world's.
+struct ObstacleTopic {
+    static constexpr std::string_view kFormat =
+        "jink_obstacle:uint64_t timestamp;uint64_t known;uint32_t id;float[3] centre;float[3] half;float[4] turn;"
+        "float radius;float uncertainty;uint16_t number;uint16_t obstacles;uint16_t areas;uint8_t kind;bool of_map;"
+        "bool is_bound;";
+    std::uint64_t timestamp = 0;
+    std::uint64_t known = 0;
+    std::uint32_t id = 0;
+    Xyz centre{};
+    Xyz half{};  ///< of a box; z of a capsule and a cylinder: of their axis; of a hull: of the box about it
+    std::array<float, 4> turn{};
+    float radius = 0.0F;          ///< of a sphere, capsule and cylinder
+    float uncertainty = 0.0F;     ///< it may stand out of its shape by so much
+    std::uint16_t number = 0;     ///< among the obstacles of the round
+    std::uint16_t obstacles = 0;  ///< of the round
+    std::uint16_t areas = 0;      ///< of the round
+    std::uint8_t kind = 0;        ///< geometry::ShapeKind
+    bool of_map = false;
+    bool is_bound = false;  ///< centre, half and turn are a box that holds the solid: a hull's
+};
+
+/// A closed area of a round: an upright cylinder, where it was at `known`.
+struct AreaTopic {
+    static constexpr std::string_view kFormat =
+        "jink_area:uint64_t timestamp;uint64_t known;float[2] centre;float[2] velocity;float radius;float bottom;"
+        "float top;float margin;uint16_t number;uint16_t obstacles;uint16_t areas;";
+    std::uint64_t timestamp = 0;
+    std::uint64_t known = 0;
+    std::array<float, 2> centre{};
+    std::array<float, 2> velocity{};
+    float radius = 0.0F;
+    float bottom = 0.0F;
+    float top = 0.0F;
+    float margin = 0.0F;
+    std::uint16_t number = 0;     ///< among the areas of the round
+    std::uint16_t obstacles = 0;  ///< of the round
+    std::uint16_t areas = 0;      ///< of the round
 };
 
 /// Records of steps are cut into parts, and a part takes the smallest of these sizes in which it fits; ULog has no

@@ -7,8 +7,7 @@ namespace jink::livepage {
 
 void add_number(std::string& out, double value, int decimals)
 {
-    constexpr double kMaxShown = 1e7;  // as toolchain/host/flight_page.hpp
-    if (std::abs(value) <= kMaxShown) {
+    if (std::abs(value) <= flightlog::kMaxShown) {
         add(out, "%.*f", decimals, value);
     } else {
         out += "null";

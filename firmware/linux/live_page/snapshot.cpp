@@ -107,6 +107,14 @@ void Snapshot::take_data(std::span<const std::byte> content)
         if (const auto segment = topic_of<flightlog::NominalTopic>(content)) {
             paths_.take(*segment);
         }
+    } else if (id == flightlog::TopicId::obstacle) {
+        if (const auto obstacle = topic_of<flightlog::ObstacleTopic>(content)) {
+            shapes_.take(*obstacle);
+        }
+    } else if (id == flightlog::TopicId::area) {
+        if (const auto area = topic_of<flightlog::AreaTopic>(content)) {
+            shapes_.take(*area);
+        }
     }
 }
 
@@ -119,6 +127,7 @@ void Snapshot::take_step(const flightlog::StepTopic& step)
     max_us_ = std::max(max_us_, step.duration_us);
     news_ = true;
     paths_.end_decision();
+    shapes_.note_step(step.timestamp, step.obstacles > 0 || step.areas > 0);
 }
 
 /// All tracks of a time come together.
@@ -149,6 +158,7 @@ void Snapshot::begin_next() noexcept
 {
     texts_reported_ = texts_seen_;
     paths_.begin_next();
+    shapes_.begin_next();
     max_work_ = 0;
     max_us_ = 0;
     news_ = false;
@@ -162,6 +172,7 @@ std::string Snapshot::json(bool is_first, const PageCounts& counts) const
     add_conflict(out);
     add_tracks(out);
     add_paths(out, is_first);
+    add_shapes(out, is_first);
     add_texts(out, is_first);
     add(out, ",\"page\":{\"clients\":%u,\"slow\":%u,\"refused\":%u,\"messages_lost\":%u}}", counts.clients, counts.slow,
         counts.refused, counts.messages);
@@ -274,6 +285,16 @@ void Snapshot::add_paths(std::string& out, bool is_first) const
     const std::optional<std::uint64_t> decided = paths_.decision_time();
     if (decided && (is_first || paths_.has_new_decision())) {
         paths_.add_decision(out, seconds(*decided), shown_.max_cost);
+    } else {
+        out += "null";
+    }
+}
+
+void Snapshot::add_shapes(std::string& out, bool is_first) const
+{
+    out += ",\"shapes\":";
+    if (is_first || shapes_.is_new()) {
+        shapes_.add(out, seconds(shapes_.known() != 0 ? shapes_.known() : step_.timestamp));
     } else {
         out += "null";
     }

@@ -12,6 +12,7 @@
 
 #include "firmware/linux/flight_log/topics.hpp"
 #include "firmware/linux/live_page/shown_paths.hpp"
+#include "firmware/linux/live_page/shown_shapes.hpp"
 
 namespace jink::livepage {
 
@@ -50,8 +51,8 @@ public:
     /// A step came at all.
     [[nodiscard]] bool has_step() const noexcept { return start_.has_value(); }
     /// One JSON object without line ends: docs/guides/live_page.md.
-    /// @param is_first  of a client: the last kMaxTexts and the newest decision; otherwise what came since the last
-    /// call of `begin_next`
+    /// @param is_first  of a client: the last kMaxTexts, the newest decision, and obstacles and closed areas; otherwise
+    /// what came or changed since the last call of `begin_next`
     [[nodiscard]] std::string json(bool is_first, const PageCounts& counts) const;
     /// The next period begins: its texts and its most expensive step.
     void begin_next() noexcept;
@@ -74,6 +75,7 @@ private:
     void add_conflict(std::string& out) const;
     void add_tracks(std::string& out) const;
     void add_paths(std::string& out, bool is_first) const;
+    void add_shapes(std::string& out, bool is_first) const;
     void add_texts(std::string& out, bool all) const;
 
     ShownParameters shown_;
@@ -82,6 +84,7 @@ private:
     std::optional<flightlog::OwnTopic> own_;
     std::vector<flightlog::TrackTopic> tracks_;
     ShownPaths paths_;
+    ShownShapes shapes_;
     std::deque<Text> texts_;
     std::uint64_t texts_seen_ = 0;
     std::uint64_t texts_reported_ = 0;

@@ -34,6 +34,26 @@ function openNominal({ t, on_route, sizes, points }) {
   return nominal;
 }
 
+/** Names of kinds as the page's data number them: PageShape. */
+const KINDS = ["sphere", "box", "capsule", "cylinder", "hull", "area"];
+
+/** Columns of shapes as {all, t, lists}: all of them, and those at each time at which they change. */
+function openShapes(columns) {
+  const [from, until, kinds, maps, radius] = ["from", "until", "kind", "of_map", "radius"].map((name) => decode(columns[name]));
+  const [centre, half, turn, velocity] = ["centre", "half", "turn", "velocity"].map((name) => columns[name].map(decode));
+  const row = (vectors, i) => vectors.map((column) => column[i]);
+  const all = Array.from(from, (time, i) => ({ time, until: until[i], kind: KINDS[kinds[i]], of_map: maps[i] > 0, radius: radius[i],
+    centre: row(centre, i), half: row(half, i), turn: row(turn, i), velocity: row(velocity, i) }));
+  const t = [...new Set([...from, ...until])].sort((a, b) => a - b), lists = [];
+  let begun = 0, active = [];
+  for (const time of t) {
+    active = active.filter((shape) => shape.until > time);
+    for (; begun < all.length && all[begun].time <= time; ++begun) if (all[begun].until > time) active.push(all[begun]);
+    lists.push(active.slice());
+  }
+  return { all, t, lists };
+}
+
 /** Decodes a flight in place, once. Vectors are [x, y, z], each an array; speeds are lengths of vectors. */
 export function open(flight) {
   if (flight.isOpen) return flight;
@@ -47,6 +67,7 @@ export function open(flight) {
     for (const candidate of decision.candidates) candidate.points = candidate.points && decode3(candidate.points);
   }
   flight.nominal = openNominal(flight.nominal);
+  flight.shapes = openShapes(flight.shapes);
   flight.isOpen = true;
   return flight;
 }
@@ -100,6 +121,14 @@ const NOMINAL_LIFE = 0.5;
 export function nominalAt(flight, time) {
   const i = indexAt(flight.nominal.t, time);
   return i >= 0 && time <= flight.nominal.t[i] + NOMINAL_LIFE + 1e-6 ? flight.nominal.paths[i] : null;
+}
+
+const NOTHING = [];
+
+/** Obstacles and closed areas as jink believed them at a time. */
+export function shapesAt(flight, time) {
+  const i = indexAt(flight.shapes.t, time);
+  return i < 0 ? NOTHING : flight.shapes.lists[i];
 }
 
 /** How long a decision's candidates are shown after it, unless another one follows [s]. */

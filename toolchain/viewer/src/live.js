@@ -4,7 +4,7 @@ import { Charts } from "./charts.js";
 import { decisionAt } from "./data.js";
 import { LiveFlight, separationTo } from "./live_flight.js";
 import { Replay } from "./replay.js";
-import { COLOURS, candidateKeys, decisionText, key, make, measure, nominalKeys } from "./words.js";
+import { COLOURS, believedKeys, candidateKeys, decisionText, key, make, measure, nominalKeys } from "./words.js";
 
 const at = (id) => document.getElementById(id);
 /** Without an event for longer the page says that it is old [ms]. */
@@ -95,7 +95,7 @@ function nameSeries() {
   if (flight.safety_distance !== null) keys.push(key(COLOURS.limit, `${measure(flight.safety_distance, "m")}: half extent of the safety box, JNK_HALF_XY`, { dashed: true }));
   at("series").replaceChildren(...keys, key(COLOURS.control, "jink has control", { width: 8 }), key(COLOURS.decision, "decision", { width: 6 }));
   at("paths").replaceChildren(...(replay ? [key(COLOURS.own, "flown under jink\u2019s control", { width: 4 }), key(COLOURS.mission, "flown by the autopilot", { width: 2.5 }),
-    key(COLOURS.threat, "tracks"), ...nominalKeys()] : []));
+    key(COLOURS.threat, "tracks"), ...believedKeys(), ...nominalKeys()] : []));
 }
 
 function take(json) {

@@ -21,12 +21,13 @@ export class LiveFlight {
     const columns = () => [[], [], []];
     Object.assign(this, { name: "live", t: [], own: columns(), velocity: columns(), command: columns(), separation: [], work: [], speed: [],
       commanded: [], phases: [], events: [], decisions: [], threats: [], mission: columns(), safety_distance: null, least: null,
-      least_time: NaN, step: -1, lastDecision: null, lastText: -1, nominal: { t: [], paths: [] } });
+      least_time: NaN, step: -1, lastDecision: null, lastText: -1, nominal: { t: [], paths: [] }, shapes: { t: [], lists: [] } });
   }
 
   /** Takes one event of jinkd. */
   take(state) {
     if (state.step < this.step) this.clear();  // jinkd began anew
+    this.takeShapes(state.shapes);
     if (state.step === this.step) { this.takeTexts(state); return; }
     this.step = state.step;
     this.safety_distance = state.safety_distance;
@@ -56,6 +57,15 @@ export class LiveFlight {
     for (const older of this.decisions) older.candidates = [];
     const said = this.events.find((e) => e.time === decision.time && e.text.includes(", new manoeuvre"));
     this.decisions.push({ ...decision, text: said ? said.text : "" });
+  }
+
+  /** They come when they have changed, and to a new hearer; null: they stay. Shown are the newest alone, at all times. */
+  takeShapes(shapes) {
+    if (!shapes) return;
+    const obstacles = shapes.obstacles.map((o) => ({ ...o, time: shapes.time, centre: vectorOf(o.position), velocity: [0, 0] }));
+    const areas = shapes.closed_areas.map((a) => ({ ...a, kind: "area", time: shapes.time, centre: [...vectorOf(a.position), (a.bottom + a.top) / 2],
+      half: [0, 0, (a.top - a.bottom) / 2], turn: [1, 0, 0, 0] }));
+    this.shapes = { t: [-Infinity], lists: [[...obstacles, ...areas]] };
   }
 
   takeTracks(tracks) {

@@ -4,7 +4,7 @@ import { Charts } from "./charts.js";
 import { Replay } from "./replay.js";
 import { decisionAt, indexAt, open, phaseAt } from "./data.js";
 import { outcomes, cards, table } from "./summary.js";
-import { COLOURS, candidateKeys, decisionText, key, make, measure, nominalKeys } from "./words.js";
+import { COLOURS, believedKeys, candidateKeys, decisionText, key, make, measure, nominalKeys } from "./words.js";
 
 const at = (id) => document.getElementById(id);
 const sources = JSON.parse(at("data").textContent);
@@ -70,6 +70,7 @@ function namePaths() {
   if (flight.mission[0].length > 1) keys.push(key(COLOURS.mission, "mission", { dashed: true }));
   if (flight.nominal.t.length) keys.push(...nominalKeys());
   if (flight.threats.length) keys.push(key(COLOURS.threat, "threats"));
+  keys.push(...believedKeys(flight.shapes.all));
   if (other) keys.push(key(COLOURS.other, `flown, ${other.name}`, { width: 2.5 }));
   at("paths").replaceChildren(...(replay ? keys : []));
 }

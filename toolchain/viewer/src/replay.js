@@ -5,8 +5,8 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Line2 } from "three/addons/lines/Line2.js";
 import { LineGeometry } from "three/addons/lines/LineGeometry.js";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
-import { COLOURS, FATES, NOMINAL } from "./words.js";
-import { controlSpans, decisionAt, indexAt, nominalAt, placeOf, pointAt } from "./data.js";
+import { BELIEVED, COLOURS, FATES, NOMINAL } from "./words.js";
+import { controlSpans, decisionAt, indexAt, nominalAt, placeOf, pointAt, shapesAt } from "./data.js";
 
 // Materials are kept: a shader whose last material is disposed of would be compiled again for the next flight.
 const materials = new Map();
@@ -48,6 +48,13 @@ function bodyOf(threat) {
   return new THREE.SphereGeometry(threat.radius, 28, 18);
 }
 
+/** What jink believes, as the body of a threat. A hull is known by the box about it. */
+function bodyOfShape({ kind, half, radius }) {
+  if (kind === "box" || kind === "hull") return bodyOf({ form: "box", half_extents: half });
+  if (kind === "cylinder" || kind === "area") return bodyOf({ form: "cylinder", radius, half_height: half[2] });
+  return bodyOf({ form: "sphere", radius, half_height: kind === "capsule" ? half[2] : 0 });
+}
+
 /** Columns as points. */
 const pointsOf = ([xs, ys, zs]) => Array.from(xs, (x, i) => [x, ys[i], zs[i]]);
 
@@ -78,7 +85,8 @@ export class Replay {
     this.bodies = new THREE.Group();
     this.candidates = new THREE.Group();
     this.nominal = new THREE.Group();
-    this.scene.add(this.ground, this.fixed, this.bodies, this.candidates, this.nominal);
+    this.shapes = new THREE.Group();
+    this.scene.add(this.ground, this.fixed, this.bodies, this.candidates, this.nominal, this.shapes);
     this.showsCandidates = true;
     this.follows = false;
     this.time = 0;
@@ -131,7 +139,7 @@ export class Replay {
   }
 
   show(flight, other, shift) {
-    Object.assign(this, { flight, other, shift, drawnDecision: undefined, drawnNominal: undefined });
+    Object.assign(this, { flight, other, shift, drawnDecision: undefined, drawnNominal: undefined, drawnShapes: undefined });
     this.frame();
     empty(this.fixed);
     empty(this.bodies);
@@ -213,6 +221,9 @@ export class Replay {
     if (decision !== this.drawnDecision) this.drawCandidates(decision);
     const nominal = nominalAt(this.flight, time);
     if (nominal !== this.drawnNominal) this.drawNominal(nominal);
+    const shapes = shapesAt(this.flight, time);
+    if (shapes !== this.drawnShapes) this.drawShapes(shapes);
+    this.placeShapes(time);
     this.request();
   }
 
@@ -240,6 +251,27 @@ export class Replay {
       const line = this.line(pointsOf(candidate.points), colour, width, { dashed, order: candidate.fate === "chosen" ? 4 : 3 });
       line.userData.fate = candidate.fate;
       this.candidates.add(line);
+    }
+  }
+
+  /** `shapes`: what jink believes to be in the way. World axes become those of the scene: (x, y, z) to (x, z, -y). */
+  drawShapes(shapes) {
+    this.drawnShapes = shapes;
+    empty(this.shapes);
+    for (const shape of shapes) {
+      const mesh = new THREE.Mesh(bodyOfShape(shape), solid(COLOURS.believed, BELIEVED[shape.kind === "area" ? "area" : "obstacle"].opacity));
+      const [w, x, y, z] = shape.turn;
+      mesh.quaternion.set(x, z, -y, w).normalize();
+      mesh.userData.shape = shape;
+      this.shapes.add(mesh);
+    }
+  }
+
+  /** Closed areas move. */
+  placeShapes(time) {
+    for (const mesh of this.shapes.children) {
+      const { centre: [x, y, z], velocity, time: known } = mesh.userData.shape;
+      mesh.position.copy(this.toScene([x + velocity[0] * (time - known), y + velocity[1] * (time - known), z]));
     }
   }
 

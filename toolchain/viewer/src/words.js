@@ -2,7 +2,7 @@
 // Colours and words of the page.
 
 export const COLOURS = { own: "#1d5fa8", other: "#a8327d", command: "#2b2f36", mission: "#8a93a0", threat: "#e07b1a", limit: "#c62828",
-  nominal: "#0f9aa0", alone: "#b06a12", control: "#d7ecd9", decision: "#1e9e3e", grid: "#d9dde3" };
+  nominal: "#0f9aa0", believed: "#59616d", alone: "#b06a12", control: "#d7ecd9", decision: "#1e9e3e", grid: "#d9dde3" };
 
 // Purple, light blue and green as in Pinheiro 4.5.1; grey and dashed: never checked.
 export const FATES = {
@@ -41,6 +41,15 @@ export function make(tag, attributes = {}, ...children) {
   return element;
 }
 
+/** Of obstacles and closed areas as jink believes them, in space. */
+export const BELIEVED = { obstacle: { opacity: 0.4, text: "obstacles, as jink believes them" }, area: { opacity: 0.16, text: "closed areas, as jink believes them" } };
+/** `shapes`: those that have an entry, all without them. */
+export function believedKeys(shapes = null) {
+  const has = (isArea) => !shapes || shapes.some((shape) => (shape.kind === "area") === isArea);
+  return [...(has(false) ? [key(COLOURS.believed, BELIEVED.obstacle.text, { width: 8, opacity: 2 * BELIEVED.obstacle.opacity })] : []),
+    ...(has(true) ? [key(COLOURS.believed, BELIEVED.area.text, { width: 8, opacity: 2 * BELIEVED.area.opacity })] : [])];
+}
+
 export const nominalKeys = () => Object.values(NOMINAL).map((n) => key(COLOURS.nominal, n.text, n));
 
 /** The entries of a legend for a decision's candidates, with their numbers. */
@@ -72,8 +81,8 @@ export function makeSvg(tag, attributes = {}, ...children) {
 }
 
 /** A legend's entry: a stroke and words. */
-export function key(colour, text, { width = 2, dashed = false } = {}) {
+export function key(colour, text, { width = 2, dashed = false, opacity = 1 } = {}) {
   const stroke = makeSvg("svg", { width: 26, height: 8 }, makeSvg("line",
-    { x1: 0, x2: 26, y1: 4, y2: 4, stroke: colour, "stroke-width": width, "stroke-dasharray": dashed ? "5 4" : "none" }));
+    { x1: 0, x2: 26, y1: 4, y2: 4, stroke: colour, "stroke-width": width, "stroke-opacity": opacity, "stroke-dasharray": dashed ? "5 4" : "none" }));
   return make("span", { className: "key" }, stroke, make("span", { textContent: text }));
 }
