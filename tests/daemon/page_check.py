@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tests of the live page, `jinkd --page`.
 
-    page_check.py refusals|server|flight --jinkd PROGRAM [--sim PROGRAM] [--viewer live.html]
+    page_check.py refusals|server|flight|shapes --jinkd PROGRAM [--sim PROGRAM] [--jink PROGRAM] [--viewer live.html]
 
 refusals: command lines that end jinkd with status 2. server: a running jinkd against good, bad, slow and many clients.
 flight: a simulated flight in real time; events are held against the simulator's own record, and shown in Chromium.
+shapes: the same of obstacles and closed areas, held against the flight log.
 """
 import argparse
 import contextlib
@@ -28,6 +29,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(TOP / "tests/viewer"))
 import browser  # noqa: E402
 from page_paths import check_decisions, check_nominal, check_paths, distance_to_path  # noqa: E402
+from page_shapes import SCENARIO, check_drawn, check_shapes as check_events_of_shapes  # noqa: E402
 from page_client import MAX_CLIENTS, MAX_HEAD, PATIENCE, STUB, Hearer, Running, answer, connect, free_port, get, read_all, until  # noqa: E402
 
 # --- refusals
@@ -216,11 +218,11 @@ def check_server(options):
 # --- flight
 
 class Listening(threading.Thread):
-    """Keeps all events, and the first one that a client hears who comes after a decision."""
+    """Keeps all events, and the first one that a client hears who comes later: after an event with a decision, or with another key."""
 
-    def __init__(self, port):
+    def __init__(self, port, key):
         super().__init__(daemon=True)
-        self.port, self.events, self.first_of_late = port, [], None
+        self.port, self.key, self.events, self.first_of_late = port, key, [], None
 
     def run(self):
         end = time.monotonic() + PATIENCE
@@ -233,7 +235,7 @@ class Listening(threading.Thread):
         try:
             while True:
                 self.events.append(hearer.next())
-                if self.first_of_late is None and any(e["decision"] for e in self.events[:-1]):
+                if self.first_of_late is None and any(e[self.key] for e in self.events[1:-1]):
                     late = Hearer(self.port)
                     self.first_of_late = late.next()
                     late.close()
@@ -296,48 +298,81 @@ def check_browser(page, port):
         page.close()
 
 
+def check_browser_of_shapes(page, port):
+    try:
+        page.errors = []
+        page.call("Page.navigate", url=f"http://127.0.0.1:{port}/")
+        page.wait_for("Page.loadEventFired")
+        until(lambda: page.run("(has => { if (has) jinkLive.source.close(); return has; })(window.jinkLive && jinkLive.state() && "
+                               "jinkLive.replay.shapes.children.some(c => c.userData.shape.kind !== 'area'))"), "no obstacle on the page")
+        check_drawn(page)
+        assert page.errors == [], page.errors
+    finally:
+        page.close()
+
+
+def fly(options, folder, scenario, key, show, *more):
+    """(what is heard, whether the page was shown): a flight in real time against jinkd with a page."""
+    port = free_port()
+    shows = options.viewer.is_file() and browser.find_chromium() is not None
+    stub = folder / "stub.html"
+    stub.write_bytes(STUB)
+    wrapper = folder / "with_page"
+    wrapper.write_text(f"#!/bin/sh\nexec '{options.jinkd}' \"$@\" --page {port} --page-file '{options.viewer if shows else stub}' {' '.join(more)}\n")
+    wrapper.chmod(0o755)
+    page = browser.Browser() if shows else None  # before the flight, which takes 16 s
+    flying = subprocess.Popen([options.sim, "fly", scenario, "--daemon", wrapper, "--out", folder / "out"],
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True)
+    listening = Listening(port, key)
+    listening.start()
+    try:
+        if shows:
+            until(lambda: listening.events, "no event comes")
+            show(page, port)
+        said, _ = flying.communicate(timeout=120)
+    finally:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(flying.pid, signal.SIGKILL)  # jinkd too: it would go on to read the next flight's line
+    listening.join(PATIENCE)
+    assert flying.returncode == 0, said
+    if not shows:
+        print("the page itself was not shown: neither chromium nor the built page")
+    return listening
+
+
 def check_flight(options):
     with tempfile.TemporaryDirectory() as name:
-        folder, port = pathlib.Path(name), free_port()
-        shows = options.viewer.is_file() and browser.find_chromium() is not None
-        stub = folder / "stub.html"
-        stub.write_bytes(STUB)
-        wrapper = folder / "with_page"
-        wrapper.write_text(f"#!/bin/sh\nexec '{options.jinkd}' \"$@\" --page {port} --page-file '{options.viewer if shows else stub}'\n")
-        wrapper.chmod(0o755)
-        page = browser.Browser() if shows else None  # before the flight, which takes 16 s
-        flying = subprocess.Popen([options.sim, "fly", str(TOP / "tests/scenario/head_on.yaml"), "--daemon", wrapper, "--out", folder / "out"],
-                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True)
-        listening = Listening(port)
-        listening.start()
-        try:
-            if shows:
-                until(lambda: listening.events, "no event comes")
-                check_browser(page, port)
-            said, _ = flying.communicate(timeout=120)
-        finally:
-            with contextlib.suppress(ProcessLookupError):
-                os.killpg(flying.pid, signal.SIGKILL)  # jinkd too: it would go on to read the next flight's line
-        listening.join(PATIENCE)
+        folder = pathlib.Path(name)
+        listening = fly(options, folder, TOP / "tests/scenario/head_on.yaml", "decision", check_browser)
         run = json.loads((folder / "out/run.json").read_text())
-        assert flying.returncode == 0, said
         check_events(listening.events, run["flights"][0])
         numbers = [e["decision"]["number"] for e in listening.events if e["decision"]]
         assert listening.first_of_late["decision"]["number"] in numbers, "a new client is not sent the newest decision"
-        if not shows:
-            print("the page itself was not shown: neither chromium nor the built page")
+
+
+def check_shapes(options):
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        scenario, logs = folder / "shapes.yaml", folder / "logs"
+        scenario.write_text(SCENARIO)
+        logs.mkdir()
+        listening = fly(options, folder, scenario, "shapes", check_browser_of_shapes, "--log", f"'{logs}'")
+        subprocess.run([options.jink, "log", "--csv", folder / "tables", sorted(logs.glob("*.ulg"))[0]], check=True, timeout=60)
+        check_events_of_shapes(listening.events, folder / "tables")
+        assert listening.first_of_late["shapes"]["closed_areas"], "a new client is not sent what is closed"
 
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("what", choices=["refusals", "server", "flight"])
+    parser.add_argument("what", choices=["refusals", "server", "flight", "shapes"])
     parser.add_argument("--jinkd", type=pathlib.Path, required=True)
     parser.add_argument("--sim", type=pathlib.Path)
+    parser.add_argument("--jink", type=pathlib.Path)
     parser.add_argument("--viewer", type=pathlib.Path, default=pathlib.Path("/nonexistent"))
     parser.add_argument("--seed", type=int, default=random.SystemRandom().randrange(1 << 31))
     options = parser.parse_args()
     print(f"seed {options.seed}")
-    {"refusals": check_refusals, "server": check_server, "flight": check_flight}[options.what](options)
+    {"refusals": check_refusals, "server": check_server, "flight": check_flight, "shapes": check_shapes}[options.what](options)
 
 
 if __name__ == "__main__":

@@ -188,6 +188,10 @@ TEST(FlightPage, ShowsItAllInABrowser)
     const Scratch scratch;
     write_runs(scratch);
     static_cast<void>(scratch.write("flight.ulg", page_flight().log));
+    sim::Scenario seen = sim::load_scenario(JINK_SCENARIOS "/scan_wall.yaml");
+    seen.duration = 14.0;
+    seen.areas = sim::load_scenario(JINK_SCENARIOS "/storm_crossing.yaml").areas;
+    static_cast<void>(scratch.write("wall.ulg", fly_recorded(seen, {}).log));
     const std::string command = "/usr/bin/python3 -B '" JINK_VIEWER_TEST "' --jink '" JINK_PROGRAM "' --input '" +
                                 scratch.path().string() + "'";
     const int status = std::system(command.c_str());

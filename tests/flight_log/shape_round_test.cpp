@@ -3,6 +3,7 @@
 // messages that are lost, and flights whose log is held against what the co-processor believed.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <map>
 #include <random>

@@ -4,7 +4,7 @@
 
     page_test.py --jink PROGRAM --input FOLDER
 
-FOLDER has run.json and changed.json (jink-sim) and flight.ulg (jinkd); pages are written there. What is shown is held
+FOLDER has run.json and changed.json (jink-sim), flight.ulg and wall.ulg (jinkd), the latter with obstacles and closed areas; pages are written there. What is shown is held
 against run.json itself and against the tables of `jink log --csv`. Exit status 77: nothing to test with.
 """
 import argparse
@@ -222,6 +222,52 @@ def check_log(page, tables):
     expect(texts and not [t for t in texts if t not in shown and t != "jinkd starts"], f"all texts are among the events: {len(texts)} of {len(shown)}")
 
 
+def check_shapes(page, tables):
+    """Obstacles and closed areas of a log: at any time those of the newest round in its tables, where they were or had moved to."""
+    steps, rounds = [], {}
+    with open(tables / "jink_step.csv", encoding="utf-8") as file:
+        steps = [int(row["timestamp"]) for row in csv.DictReader(file)]
+    for topic in ("obstacle", "area"):
+        with open(tables / f"jink_{topic}.csv", encoding="utf-8") as file:
+            for row in csv.DictReader(file):
+                rounds.setdefault((int(row["known"]) - steps[0]) * 1e-6, []).append((topic, row))
+    known = sorted(rounds)
+    expect(len(known) > 5 and {t for all in rounds.values() for t, _ in all} == {"obstacle", "area"}, f"{len(known)} rounds")
+    # The last round may have been cut by the end. Scene axes: east, up, south.
+    drawn = ("(r => r.shapes.children.map(c => [c.userData.shape.kind, c.position.x + r.origin[0], r.origin[1] - c.position.z, c.position.y + r.origin[2], c.userData.shape.radius]))"
+             "(jinkViewer.replay)")
+    kinds = ["sphere", "box", "capsule", "cylinder", "hull"]
+    for at in known[:-1]:
+        later = min([k for k in known if k > at] + [at + 2.0])
+        for time in (at + 0.002, at + 0.6 * (later - at)):
+            page.run(f"jinkViewer.replay.setTime({time}); null")
+            expected = []
+            for topic, row in rounds[at]:
+                v = {key: float(value) for key, value in row.items()}
+                if topic == "obstacle":
+                    expected.append((kinds[int(v["kind"])], v["centre[0]"], v["centre[1]"], v["centre[2]"], v["radius"]))
+                else:
+                    expected.append(("area", v["centre[0]"] + v["velocity[0]"] * (time - at), v["centre[1]"] + v["velocity[1]"] * (time - at),
+                                     (v["bottom"] + v["top"]) / 2, v["radius"]))
+            found = page.run(drawn)
+            left = list(found)
+            for solid in expected:  # solids that go on unchanged stand before new ones
+                match = [f for f in left if f[0] == solid[0] and all(abs(x - y) < 0.03 for x, y in zip(f[1:], solid[1:]))]
+                expect(match, f"at {time} s: no {solid} among {left}")
+                left = [f for f in left if not match or f is not match[0]]
+            expect(not left, f"at {time} s: {left} beside what is believed")
+    page.run(f"jinkViewer.replay.setTime({known[0] - 0.01}); null")
+    expect(known[0] < 0.05 or page.run(drawn) == [], "nothing is believed before the first round")
+    page.run(f"jinkViewer.charts.onTime({known[-2] + 0.01}); jinkViewer.replay.view('oblique'); null")
+    picture = "(r => { r.render(); return r.canvas.toDataURL(); })(jinkViewer.replay)"
+    with_them = page.run(picture)
+    page.run("jinkViewer.replay.shapes.visible = false; null")
+    expect(page.run(picture) != with_them, "they are in the picture")
+    page.run("jinkViewer.replay.shapes.visible = true; null")
+    words = page.run("document.getElementById('paths').textContent")
+    expect("obstacles, as jink believes them" in words and "closed areas, as jink believes them" in words, f"the legend is {words}")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--jink", required=True, type=lambda path: pathlib.Path(path).resolve())
@@ -244,6 +290,8 @@ def main():
     jink("report", "run.json", "changed.json", "--out", "two.html")
     jink("report", "flight.ulg")
     jink("log", "--csv", "tables", "flight.ulg")
+    jink("report", "wall.ulg")
+    jink("log", "--csv", "wall_tables", "wall.ulg")
     run = json.loads((folder / "run.json").read_text(encoding="utf-8"))
     size = (folder / "run.html").stat().st_size
     flown = sum(len(f["series"]["t"]) for f in run["flights"])
@@ -253,7 +301,8 @@ def main():
     try:
         # Every page with WebGL costs seconds of shader compilation.
         for name, check in (("two", lambda: (check_run(page, run), check_keys(page), check_comparison(page))),
-                            ("flight", lambda: check_log(page, folder / "tables"))):
+                            ("flight", lambda: check_log(page, folder / "tables")),
+                            ("wall", lambda: check_shapes(page, folder / "wall_tables"))):
             page.open(folder / f"{name}.html")
             check()
             check_widths(page, name)
