@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Random flights without a log, with one, with a live page, or with both, whose queues nobody empties: what the log
 // costs the control loop. cost_check.py counts the instructions below counted_step.
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -40,8 +41,9 @@ int main(int argc, char** argv)
 {
     const std::string mode = argc > 1 ? argv[1] : "";
     const int flights = argc > 2 ? std::atoi(argv[2]) : 3;
+    const bool is_crowded = argc > 3 && std::string(argv[3]) == "crowded";  // many obstacles and tracks
     if ((mode != "none" && mode != "log" && mode != "page" && mode != "both") || flights < 1) {
-        std::fprintf(stderr, "usage: flight_log_cost none|log|page|both [FLIGHTS]\n");
+        std::fprintf(stderr, "usage: flight_log_cost none|log|page|both [FLIGHTS [crowded]]\n");
         return 2;
     }
     LargeQueue queue;
@@ -53,11 +55,17 @@ int main(int argc, char** argv)
     options.output = mode == "page" ? static_cast<flightlog::Output*>(&feed) : mode == "both" ? &both : nullptr;
     options.output = options.output != nullptr ? options.output : &queue;
     std::uint64_t steps = 0;
-    for (int seed = 1; seed <= flights; ++seed) {
-        steps += test::fly_recorded(sim::random_scenario(static_cast<std::uint64_t>(seed)), {}, options).steps;
+    std::size_t obstacles = 0;
+    options.beside = [&](std::uint64_t, TimePoint, const app::Coprocessor& coprocessor, flightlog::HalRecorder&) {
+        obstacles = std::max(obstacles, coprocessor.obstacles().size());
+    };
+    for (int flight = 1; flight <= flights; ++flight) {
+        const auto seed = static_cast<std::uint64_t>(flight);
+        steps += test::fly_recorded(is_crowded ? sim::crowded_scenario(seed) : sim::random_scenario(seed), {}, options)
+                     .steps;
     }
     const flightlog::LogCounts counts = options.output->counts();
-    std::printf("%d flights, %llu steps, %u messages, %u dropped, %u bytes\n", flights,
-                static_cast<unsigned long long>(steps), counts.messages, counts.dropped, counts.peak);
+    std::printf("%d flights, %llu steps, %u messages, %u dropped, %u bytes, at most %zu obstacles\n", flights,
+                static_cast<unsigned long long>(steps), counts.messages, counts.dropped, counts.peak, obstacles);
     return counts.dropped == 0 && (counts.messages > 0) != options.without_log ? EXIT_SUCCESS : EXIT_FAILURE;
 }

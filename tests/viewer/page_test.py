@@ -222,6 +222,46 @@ def check_log(page, tables):
     expect(texts and not [t for t in texts if t not in shown and t != "jinkd starts"], f"all texts are among the events: {len(texts)} of {len(shown)}")
 
 
+def turned(q, v):
+    """v turned by the unit quaternion w, x, y, z."""
+    w, x, y, z = q
+    rows = [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)], [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
+    return [sum(r * c for r, c in zip(row, v)) for row in rows]
+
+
+# Points of the first solid's surface, in the world's axes from its centre on.
+SURFACE = """(() => {
+  const mesh = jinkViewer.replay.shapes.children[0], at = mesh.geometry.attributes.position, points = [];
+  mesh.updateMatrixWorld();
+  const e = mesh.matrixWorld.elements;
+  for (let i = 0; i < at.count; ++i) {
+    const [x, y, z] = [0, 1, 2].map(k => e[k] * at.getX(i) + e[4 + k] * at.getY(i) + e[8 + k] * at.getZ(i));
+    points.push([x, -z, y]);
+  }
+  return points;
+})()"""
+
+
+def check_turns(page):
+    """A turned box has its corners where they belong, and a capsule and a cylinder their axes."""
+    for turn in ([1, 0, 0, 0], [0.5, 0.5, 0.5, 0.5], [0.8, 0.6, 0, 0], [0.8, 0, 0.6, 0], [0.8, 0, 0, -0.6], [0.1, -0.7, 0.5, 0.5]):
+        for kind in ("box", "hull", "capsule", "cylinder"):
+            shape = {"kind": kind, "half": [1, 2, 4], "radius": 0.5, "turn": turn, "centre": [0, 0, 0], "velocity": [0, 0], "time": 0}
+            page.run(f"jinkViewer.replay.drawShapes([{json.dumps(shape)}]); null")
+            points = page.run(SURFACE)
+            if kind in ("box", "hull"):
+                wanted = [turned(turn, [a, b, c]) for a in (-1, 1) for b in (-2, 2) for c in (-4, 4)]
+            else:
+                wanted = [turned(turn, [0, 0, c * (4.5 if kind == "capsule" else 4)]) for c in (-1, 1)]
+            for corner in wanted:
+                nearest = min(sum((a - b) ** 2 for a, b in zip(corner, p)) for p in points) ** 0.5
+                expect(nearest < 0.02, f"{kind} turned by {turn}: no point at {corner}, the nearest is {nearest} m away")
+            farthest = max(sum(a * a for a in p) for p in points) ** 0.5
+            expected = max(sum(a * a for a in p) for p in wanted) ** 0.5
+            expect(abs(farthest - expected) < 0.05, f"{kind} turned by {turn}: {farthest} m, expected {expected} m")
+
+
 def check_shapes(page, tables):
     """Obstacles and closed areas of a log: at any time those of the newest round in its tables, where they were or had moved to."""
     steps, rounds = [], {}
@@ -264,6 +304,7 @@ def check_shapes(page, tables):
     page.run("jinkViewer.replay.shapes.visible = false; null")
     expect(page.run(picture) != with_them, "they are in the picture")
     page.run("jinkViewer.replay.shapes.visible = true; null")
+    check_turns(page)
     words = page.run("document.getElementById('paths').textContent")
     expect("obstacles, as jink believes them" in words and "closed areas, as jink believes them" in words, f"the legend is {words}")
 
