@@ -5,11 +5,14 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <cstring>
 #include <ctime>
 #include <fstream>
 #include <limits>
 
+#include "core/geometry/shape.hpp"
 #include "firmware/linux/flight_log/replay.hpp"
+#include "firmware/linux/flight_log/topics.hpp"
 #include "firmware/linux/map_file.hpp"
 #include "tests/daemon/harness.hpp"
 #include "tests/daemon/stalling_folder.hpp"
@@ -231,6 +234,31 @@ std::string map_of_box(const Vec3& centre, const Vec3& half)
     return files::map_file_of(tables.map());
 }
 
+/// Obstacles in a log: the map's one piece, as the box about it.
+void expect_piece(const std::filesystem::path& file, const Vec3& centre, const Vec3& half)
+{
+    std::ifstream in(file, std::ios::binary);
+    ulog::Reader log(in);
+    std::size_t n = 0;
+    while (const auto message = log.next()) {
+        if (message->type != ulog::Type::data ||
+            log.topic(ulog::read_number<std::uint16_t>(message->content))->name != "jink_obstacle") {
+            continue;
+        }
+        flightlog::ObstacleTopic o;
+        std::memcpy(static_cast<void*>(&o), message->content.data() + 2, flightlog::kBytesOf<flightlog::ObstacleTopic>);
+        ++n;
+        EXPECT_TRUE(o.of_map && o.is_bound);
+        EXPECT_EQ(o.kind, static_cast<std::uint8_t>(geometry::ShapeKind::hull));
+        EXPECT_EQ(o.turn, (std::array{1.0F, 0.0F, 0.0F, 0.0F}));
+        for (std::size_t k = 0; k < 3; ++k) {
+            EXPECT_NEAR(o.centre[k], centre[static_cast<int>(k)], 0.01F);
+            EXPECT_NEAR(o.half[k], half[static_cast<int>(k)], 0.01F);
+        }
+    }
+    EXPECT_GT(n, 5U);
+}
+
 TEST_F(DaemonFlightLog, AFlightWithAMapReplaysWithThatMapAlone)
 {
     scenario.threats.clear();
@@ -251,6 +279,7 @@ TEST_F(DaemonFlightLog, AFlightWithAMapReplaysWithThatMapAlone)
         ASSERT_EQ(daemon.wait(kPatience), 0) << text_of(scratch / "said");
     }
     ASSERT_EQ(logs().size(), 1U);
+    expect_piece(logs().front(), tower, {3.0F, 3.0F, 60.0F});
     EXPECT_GT(number("manoeuvres"), 0.0) << "nothing was decided about the tower";
     EXPECT_EQ(jink_log("--replay --map '" + map + "'" + quoted()), 0) << out;
     EXPECT_NE(out.find("bit-identical\n"), std::string::npos) << out;

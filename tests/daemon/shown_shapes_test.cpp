@@ -91,7 +91,7 @@ TEST_F(ShownShapesTest, TheyAreGoneWithoutNewsForTwoSecondsAndAtOnceWhereNothing
     EXPECT_EQ(event(true)["shapes"]["obstacles"].size(), 0U) << "a round of before that step";
 }
 
-/// The queue to the page was full for a moment.
+/// The queue to the page was full.
 TEST_F(ShownShapesTest, ARoundThatLacksAMessageIsPassedOver)
 {
     take_knowing(0.0, 4, 2);

@@ -3,6 +3,7 @@
 // same as by jink's own reader. Exit code 77: the peer is not installed.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -130,6 +131,28 @@ TEST(UlogPeer, ReadsEveryValueOfAFlight)
 {
     ASSERT_NE(flight().find("guidance rejoining -> avoiding"), std::string::npos) << "nothing was decided";
     expect_the_same(flight());
+}
+
+TEST(UlogPeer, ReadsObstaclesAndClosedAreas)
+{
+    sim::Scenario scenario = sim::crowded_scenario(1);
+    scenario.duration = 5.0;
+    scenario.areas.resize(2);
+    scenario.areas[0].centre = {0.0, 300.0, 0.0};
+    scenario.areas[1].centre = {0.0, -300.0, 0.0};
+    scenario.areas[1].velocity = {1.0, 0.0, 0.0};
+    for (sim::ClosedArea& area : scenario.areas) {
+        area.radius = 10.0;
+        area.top = 50.0;
+    }
+    const std::string log = fly_recorded(scenario, {}).log;
+    const Lines lines = own_lines(log);
+    for (const char* topic : {"jink_obstacle ", "jink_area "}) {
+        EXPECT_GT(std::count_if(lines.begin(), lines.end(), [&](const auto& line) { return line.starts_with(topic); }),
+                  5)
+            << topic;
+    }
+    expect_the_same(log);
 }
 
 TEST(UlogPeer, ReadsALogThatIsCut)
