@@ -152,7 +152,7 @@ TEST(UlogPeer, ReadsObstaclesAndClosedAreas)
                   5)
             << topic;
     }
-    expect_the_same(log);
+    expect_the_same(log, 500);
 }
 
 TEST(UlogPeer, ReadsALogThatIsCut)
