@@ -157,6 +157,14 @@ TEST(BuiltUpArea, ReadsBackFromItsFile)
     EXPECT_EQ(again.outcome, flown.outcome);
 }
 
+// Regression: with the units spent, a command that was not checked counted as better than braking, and in a box that
+// reached nearer than the wall any depth counted as the same. The vehicle went on into the wall, to 0.66 m.
+TEST(BuiltUpArea, TheVehicleDoesNotGoOnIntoAWall)
+{
+    const Scenario s = encounter_of(EncounterKind::built_up, 285);
+    EXPECT_GE(fly_in_process(s).closest.surface, s.promise);
+}
+
 /// The judge takes a box as reported from the start on, and its conflict begins up to 12 s before the leg comes too
 /// near: at the cruise speed that is the LiDAR's range and the promise more, which is flown in 0.14 s. The box is seen
 /// then.
