@@ -14,7 +14,7 @@ namespace {
 /// Halvings that find how much of the box must be taken off.
 constexpr int kShrinkSteps = 6;
 /// Of two boxes that touch, and rounding says that they do not [m].
-constexpr float kLeastOverlap = 1e-4F;
+constexpr float kMinOverlap = 1e-4F;
 /// Of the sum of the magnitudes, as stated.
 constexpr float kBoxRounding = 3e-5F;
 static_assert(kOverlapResolution * static_cast<float>(1 << kShrinkSteps) == 1.0F);
@@ -110,7 +110,7 @@ float obstacle_margin(const Vec3& half, const Vec3& from, const Vec3& to, const 
         return distance - extra;
     }
     if (is_box && !budget.exhausted()) {
-        return -std::max(kLeastOverlap, depth_in_box(half, from, to, shape)) - extra;
+        return -std::max(kMinOverlap, depth_in_box(half, from, to, shape)) - extra;
     }
     return -overlap(half, from, to, shape, budget) - extra;
 }
