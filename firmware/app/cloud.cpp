@@ -19,8 +19,9 @@ void CloudObstacles::begin_scan(const link::CloudScan& scan) noexcept
     // A scan older than the own state is placed by flying back; the link refuses those that are too old.
     view_.is_placed = view_.is_placed && gap <= view_.own_age;
     view_.position += view_.velocity * gap;
-    cos_yaw_ = std::cos(view_.yaw);
-    sin_yaw_ = std::sin(view_.yaw);
+    const float cosine = std::cos(view_.yaw);
+    const float sine = std::sin(view_.yaw);
+    turn_.topLeftCorner<2, 2>() << cosine, -sine, sine, cosine;
     diagnostics_.scans_unplaced += view_.is_placed ? 0U : 1U;
     image_.bins.fill({});
 }
@@ -56,33 +57,42 @@ void CloudObstacles::add_hit(const Vec3& point) noexcept
         return;
     }
     ++diagnostics_.kept;
-    bin.add(point, 0.0F);
+    CloudSurface surface;
+    surface.add(point);
+    bin.add(surface);
 }
 
-Vec3 CloudObstacles::to_world(const Vec3& local) const noexcept
+geometry::Shape CloudObstacles::to_world(const geometry::Shape& local) const noexcept
 {
-    return view_.position +
-           Vec3(cos_yaw_ * local.x() - sin_yaw_ * local.y(), sin_yaw_ * local.x() + cos_yaw_ * local.y(), local.z());
+    geometry::Shape world = local;
+    world.centre = view_.position + turn_ * local.centre;
+    if (world.kind == geometry::ShapeKind::box) {
+        world.axes = turn_ * local.axes;  // a capsule is upright
+    }
+    return world;
 }
 
-Vec3 CloudObstacles::to_local(const Vec3& world) const noexcept
+geometry::Shape CloudObstacles::to_local(const geometry::Shape& world) const noexcept
 {
-    const Vec3 offset = world - view_.position;
-    return {cos_yaw_ * offset.x() + sin_yaw_ * offset.y(), cos_yaw_ * offset.y() - sin_yaw_ * offset.x(), offset.z()};
+    geometry::Shape local = world;
+    local.centre = turn_.transpose() * (world.centre - view_.position);
+    local.axes = turn_.transpose() * world.axes;
+    return local;
 }
 
 /// Keeps what was known before and lies where this scan does not see, notes what it hit, and adds the former to it.
 void CloudObstacles::remember(bool all_came) noexcept
 {
     const auto is_hidden = [&](const Remembered& old) {
-        const State state = image_.bins[CloudImage::bin_of(to_local(old.centre))].state;
+        const State state = image_.bins[CloudImage::bin_of(to_local(old.box).centre)].state;
         return state == State::unseen || state == State::spoiled || (state == State::empty && !all_came);
     };
     // Within the own box the rays that hit it count as hits of the own body: it is there until it is seen elsewhere.
     const auto is_at_the_body = [&](const Remembered& old) {
-        const Vec3 local = to_local(old.centre);
+        const Vec3 local = to_local(old.box).centre;
         const Vec3 off = (local.cwiseAbs() - view_.half_extents).cwiseMax(0.0F);
-        return image_.bins[CloudImage::bin_of(local)].state == State::spoiled && off.norm() <= old.radius + kBodyReach;
+        return image_.bins[CloudImage::bin_of(local)].state == State::spoiled &&
+               off.norm() <= old.box.half.norm() + kBodyReach;
     };
     std::size_t kept = 0;
     for (Remembered& old : memory_) {
@@ -98,16 +108,18 @@ void CloudObstacles::remember(bool all_came) noexcept
     for (const CloudBin& bin : image_.bins) {
         for (const CloudSurface& surface : bin.layers) {
             if (surface.has_points()) {
-                static_cast<void>(memory_.try_push_back(
-                    {to_world(surface.middle()), surface.radius(), scan_.stamp + view_.keep, scan_.sensor}));
+                static_cast<void>(
+                    memory_.try_push_back({to_world(surface.box()), scan_.stamp + view_.keep, scan_.sensor}));
             }
         }
     }
     for (std::size_t i = 0; i < kept; ++i) {
         const Remembered& old = memory_[i];
         if (old.sensor == scan_.sensor) {
-            const Vec3 local = to_local(old.centre);
-            image_.bins[CloudImage::bin_of(local)].add(local, old.radius);
+            const geometry::Shape local = to_local(old.box);
+            CloudSurface surface;
+            surface.add(local);
+            image_.bins[CloudImage::bin_of(local.centre)].add(surface);
             ++diagnostics_.remembered;
         }
     }
@@ -122,22 +134,15 @@ void CloudObstacles::give() noexcept
 {
     const CloudCover cover(image_, sure_range(view_));
     const std::uint32_t first = first_id_ + scan_.sensor * 512U;
-    Mat3 turn = Mat3::Identity();
-    turn.topLeftCorner<2, 2>() << cos_yaw_, -sin_yaw_, sin_yaw_, cos_yaw_;
     const auto boxes = cover.boxes(kMinReturnRadius);
     // First those that go, so that there is space for those that come.
     for (std::size_t i = boxes.size(); i < kMaxCloudObstacles; ++i) {
         static_cast<void>(table_->remove(first + static_cast<std::uint32_t>(i)));
     }
     for (std::size_t i = 0; i < boxes.size(); ++i) {
-        geometry::Shape box = boxes[i];
-        box.centre = to_world(box.centre);
-        if (box.kind == geometry::ShapeKind::box) {
-            box.axes = turn * box.axes;  // a capsule is upright
-        }
         // Each refusal is counted in the table.
-        static_cast<void>(
-            table_->update({first + static_cast<std::uint32_t>(i), box}, scan_.stamp + view_.keep, view_.position));
+        static_cast<void>(table_->update({first + static_cast<std::uint32_t>(i), to_world(boxes[i])},
+                                         scan_.stamp + view_.keep, view_.position));
     }
     diagnostics_.obstacles += static_cast<std::uint32_t>(boxes.size());
     diagnostics_.left_out += static_cast<std::uint32_t>(cover.left_out());

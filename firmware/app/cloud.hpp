@@ -40,7 +40,7 @@ struct CloudDiagnostics {
 /// Hits are placed by the own position at the scan's stamp, flown on or back from the newest one, and by the own yaw as
 /// known when the scan began. The sensor counts as the vehicle's centre.
 ///
-/// Memory: about 95 KiB, for computers that have LiDARs. add() is O(1); end_scan() as CloudCover, and
+/// Memory: about 180 KiB, for computers that have LiDARs. add() is O(1); end_scan() as CloudCover, and
 /// O(kMaxCloudObstacles * kMaxObstacles). Nothing is allocated.
 class CloudObstacles final : public link::CloudSink {
 public:
@@ -72,10 +72,9 @@ public:
     [[nodiscard]] const CloudDiagnostics& diagnostics() const noexcept { return diagnostics_; }
 
 private:
-    /// A surface of a former scan, as a sphere in the world.
+    /// A surface of a former scan, as an upright box in the world.
     struct Remembered {
-        Vec3 centre = Vec3::Zero();
-        float radius = 0.0F;
+        geometry::Shape box;
         TimePoint expires;
         std::uint8_t sensor = 0;
     };
@@ -85,16 +84,15 @@ private:
     void add_hit(const Vec3& point) noexcept;
     void remember(bool all_came) noexcept;
     void give() noexcept;
-    [[nodiscard]] Vec3 to_world(const Vec3& local) const noexcept;
-    [[nodiscard]] Vec3 to_local(const Vec3& world) const noexcept;
+    [[nodiscard]] geometry::Shape to_world(const geometry::Shape& local) const noexcept;
+    [[nodiscard]] geometry::Shape to_local(const geometry::Shape& world) const noexcept;
 
     std::uint32_t first_id_;
     world::ObstacleTable* table_ = nullptr;
     CloudView next_view_;
     CloudView view_;  ///< position: at the scan's stamp
     link::CloudScan scan_;
-    float cos_yaw_ = 1.0F;
-    float sin_yaw_ = 0.0F;
+    Mat3 turn_ = Mat3::Identity();  ///< from the sensor's frame to the world's
     CloudDiagnostics diagnostics_;
     CloudImage image_;
     StaticVector<Remembered, kMaxRemembered> memory_;

@@ -11,9 +11,6 @@ constexpr float kDegree = kPi / 180.0F;
 constexpr float kColumnWidth = 2.0F * kPi / static_cast<float>(CloudImage::kColumns);
 constexpr float kLowest = -45.0F * kDegree;
 constexpr float kRowHeight = 90.0F * kDegree / static_cast<float>(CloudImage::kRows);
-/// What single precision rounds of sums over 600 m [m].
-constexpr float kRounding = 0.01F;
-
 /// What is as deep as it is wide is an upright capsule, which costs less to check than a box: where its radius is more
 /// than the least half extent by this at most [m], or this share of the distance.
 constexpr float kRoundOff = 0.3F;
@@ -235,32 +232,17 @@ geometry::Shape CloudCover::box_of(const CloudRegion& region, float least_half) 
     };
     CloudMoments moments;
     for_each_surface([&](const CloudSurface& surface) { moments += surface.moments(); });
-    const float angle = moments.direction();
-    const bool is_past = angle >= 0.5F * kPi;
-    const float other = is_past ? angle - 0.5F * kPi : angle + 0.5F * kPi;
-    Interval along;
-    Interval across;  // along the direction a quarter turn to the left of `angle`
-    Interval height;
-    for_each_surface([&](const CloudSurface& surface) {
-        const Interval a = surface.along(angle);
-        const Interval b = surface.along(other);
-        along.add(a.low, a.high);
-        across.add(is_past ? -b.high : b.low, is_past ? -b.low : b.high);
-        height.add(surface.height().low, surface.height().high);
-    });
-    Mat3 axes = Mat3::Identity();
-    axes.col(0) = Vec3(std::cos(angle), std::sin(angle), 0.0F);
-    axes.col(1) = Vec3(-std::sin(angle), std::cos(angle), 0.0F);
-    const Vec3 low(along.low, across.low, height.low);
-    const Vec3 high(along.high, across.high, height.high);
-    const Vec3 half = ((0.5F * (high - low)).array() + kRounding).cwiseMax(least_half);
-    const Vec3 middle = axes * (0.5F * (low + high));
+    CloudBounds bounds(moments.direction());
+    for_each_surface([&](const CloudSurface& surface) { bounds.add(surface); });
+    const geometry::Shape box = bounds.box(least_half);
+    const Vec3& half = box.half;
+    const Vec3& middle = box.centre;
     const float round = half.head<2>().norm();
     if (round - half.head<2>().minCoeff() <= std::max(kRoundOff, kRoundShare * middle.norm())) {
         const Vec3 up(0.0F, 0.0F, half.z());
         return geometry::make_capsule(middle - up, middle + up, round);
     }
-    return geometry::make_box(middle, half, axes);
+    return box;
 }
 
 StaticVector<geometry::Shape, kMaxCloudObstacles> CloudCover::boxes(float least_half) const noexcept

@@ -9,19 +9,30 @@ namespace {
 
 constexpr float kAxisAngle = kPi / static_cast<float>(CloudSurface::kAxes);
 
+/// What single precision rounds of sums over 600 m [m].
+constexpr float kRounding = 0.01F;
+
 struct LevelAxis {
     float cosine;
     float sine;
 };
 /// At k * kAxisAngle.
-constexpr std::array<LevelAxis, CloudSurface::kAxes> kAxisOf{{{1.0F, 0.0F},
+constexpr std::array<LevelAxis, CloudSurface::kAxes> kAxisOf{{{1.00000000F, 0.00000000F},
+                                                              {0.98078528F, 0.19509032F},
                                                               {0.92387953F, 0.38268343F},
+                                                              {0.83146961F, 0.55557023F},
                                                               {0.70710678F, 0.70710678F},
+                                                              {0.55557023F, 0.83146961F},
                                                               {0.38268343F, 0.92387953F},
-                                                              {0.0F, 1.0F},
+                                                              {0.19509032F, 0.98078528F},
+                                                              {0.00000000F, 1.00000000F},
+                                                              {-0.19509032F, 0.98078528F},
                                                               {-0.38268343F, 0.92387953F},
+                                                              {-0.55557023F, 0.83146961F},
                                                               {-0.70710678F, 0.70710678F},
-                                                              {-0.92387953F, 0.38268343F}}};
+                                                              {-0.83146961F, 0.55557023F},
+                                                              {-0.92387953F, 0.38268343F},
+                                                              {-0.98078528F, 0.19509032F}}};
 
 }  // namespace
 
@@ -66,20 +77,38 @@ void Interval::add(float from, float to) noexcept
     high = std::max(high, to);
 }
 
-void CloudSurface::add(const Vec3& point, float radius) noexcept
+void CloudSurface::add(const Vec3& point) noexcept
 {
     for (std::size_t k = 0; k < kAxes; ++k) {
         const float t = kAxisOf[k].cosine * point.x() + kAxisOf[k].sine * point.y();
-        level_[k].add(t - radius, t + radius);
+        level_[k].add(t, t);
     }
-    height_.add(point.z() - radius, point.z() + radius);
+    height_.add(point.z(), point.z());
     const float range = point.norm();
-    range_.add(range - radius, range + radius);
-    // The sphere's own spread: a third of the squared radius along each axis, that of its surface.
-    const float own = radius * radius / 3.0F;
+    range_.add(range, range);
     const Vec3& p = point;
-    add_means(1.0F,
-              {p.x(), p.y(), p.z(), p.x() * p.x() + own, p.x() * p.y(), p.y() * p.y() + own, p.z() * p.z() + own});
+    add_means(1.0F, {p.x(), p.y(), p.z(), p.x() * p.x(), p.x() * p.y(), p.y() * p.y(), p.z() * p.z()});
+}
+
+void CloudSurface::add(const geometry::Shape& box) noexcept
+{
+    const Vec3& c = box.centre;
+    const auto reach = [&](const Vec3& direction) {
+        return (box.axes.transpose() * direction).cwiseAbs().dot(box.half);
+    };
+    for (std::size_t k = 0; k < kAxes; ++k) {
+        const Vec3 axis(kAxisOf[k].cosine, kAxisOf[k].sine, 0.0F);
+        const float middle = axis.dot(c);
+        level_[k].add(middle - reach(axis), middle + reach(axis));
+    }
+    const float up = reach(Vec3::UnitZ());
+    height_.add(c.z() - up, c.z() + up);
+    const Vec3 local = (box.axes.transpose() * c).cwiseAbs();
+    range_.add((local - box.half).cwiseMax(0.0F).norm(), (local + box.half).norm());
+    // Of an evenly filled box: a third of the squared half extent along each of its axes.
+    const Mat3 own = box.axes * (box.half.cwiseAbs2() / 3.0F).asDiagonal() * box.axes.transpose();
+    add_means(1.0F, {c.x(), c.y(), c.z(), c.x() * c.x() + own(0, 0), c.x() * c.y() + own(0, 1),
+                     c.y() * c.y() + own(1, 1), c.z() * c.z() + own(2, 2)});
 }
 
 void CloudSurface::add_means(float n, const std::array<float, 7>& means) noexcept
@@ -110,18 +139,32 @@ Interval CloudSurface::along(float angle) const noexcept
     return {first * a.low + second * b.low, first * a.high + second * b.high};
 }
 
-Vec3 CloudSurface::middle() const noexcept
+geometry::Shape CloudSurface::box() const noexcept
 {
-    const Interval& x = level_[0];
-    const Interval& y = level_[kAxes / 2];
-    return 0.5F * Vec3(x.low + x.high, y.low + y.high, height_.low + height_.high);
+    CloudBounds bounds(moments().direction());
+    bounds.add(*this);
+    return bounds.box(0.0F);
 }
 
-float CloudSurface::radius() const noexcept
+void CloudBounds::add(const CloudSurface& surface) noexcept
 {
-    const Interval& x = level_[0];
-    const Interval& y = level_[kAxes / 2];
-    return 0.5F * Vec3(x.high - x.low, y.high - y.low, height_.high - height_.low).norm();
+    const bool is_past = direction_ >= 0.5F * kPi;
+    const Interval a = surface.along(direction_);
+    const Interval b = surface.along(is_past ? direction_ - 0.5F * kPi : direction_ + 0.5F * kPi);
+    along_.add(a.low, a.high);
+    across_.add(is_past ? -b.high : b.low, is_past ? -b.low : b.high);
+    height_.add(surface.height().low, surface.height().high);
+}
+
+geometry::Shape CloudBounds::box(float least_half) const noexcept
+{
+    Mat3 axes = Mat3::Identity();
+    axes.col(0) = Vec3(std::cos(direction_), std::sin(direction_), 0.0F);
+    axes.col(1) = Vec3(-axes(1, 0), axes(0, 0), 0.0F);
+    const Vec3 low(along_.low, across_.low, height_.low);
+    const Vec3 high(along_.high, across_.high, height_.high);
+    return geometry::make_box(axes * (0.5F * (low + high)),
+                              ((0.5F * (high - low)).array() + kRounding).cwiseMax(least_half), axes);
 }
 
 void CloudSurface::add(const CloudSurface& other) noexcept
@@ -146,11 +189,9 @@ bool CloudSurface::is_close_to(const CloudSurface& other) const noexcept
     return has_points() && other.has_points() && gap_to(other) <= patch_depth(std::min(range_.low, other.range_.low));
 }
 
-void CloudBin::add(const Vec3& point, float radius) noexcept
+void CloudBin::add(const CloudSurface& added) noexcept
 {
     state = State::hit;
-    CloudSurface added;
-    added.add(point, radius);
     CloudSurface& nearer = layers[0];
     CloudSurface& farther = layers[1];
     const auto apart = [](const CloudSurface& a, const CloudSurface& b) {

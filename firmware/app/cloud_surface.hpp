@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "core/base/vec3.hpp"
+#include "core/geometry/shape.hpp"
 
 namespace jink::app {
 
@@ -42,7 +43,7 @@ struct Interval {
 class CloudSurface {
 public:
     /// Level directions, evenly spread over half a turn.
-    static constexpr std::size_t kAxes = 8;
+    static constexpr std::size_t kAxes = 16;
 
     /// Least depth of a surface [m], and its share of the range: a plane seen at up to 60 degrees from its normal lies
     /// within 0.3 times the range across a bin of 10 degrees.
@@ -52,8 +53,10 @@ public:
     [[nodiscard]] static float patch_depth(float nearest) noexcept;
 
     [[nodiscard]] bool has_points() const noexcept { return n_ > 0.0F; }
-    /// A sphere about `point`. O(kAxes).
-    void add(const Vec3& point, float radius) noexcept;
+    /// O(kAxes).
+    void add(const Vec3& point) noexcept;
+    /// All of an upright box, as one point with the box's spread. O(kAxes).
+    void add(const geometry::Shape& box) noexcept;
     /// All that another one holds. O(kAxes).
     void add(const CloudSurface& other) noexcept;
     /// Of the ranges added [m].
@@ -66,11 +69,10 @@ public:
     /// They may be one: what lies between them is no more than patch_depth().
     [[nodiscard]] bool is_close_to(const CloudSurface& other) const noexcept;
     /// Bounds of the extent along the level direction at `angle`, 0 to pi [rad]: exact along the axes, and between them
-    /// wider by at most a fifth of the extent across. O(1).
+    /// wider by at most a tenth of the extent across. O(1).
     [[nodiscard]] Interval along(float angle) const noexcept;
-    /// Middle of the extents along x, y and z, and the radius of the sphere about it that holds all points.
-    [[nodiscard]] Vec3 middle() const noexcept;
-    [[nodiscard]] float radius() const noexcept;
+    /// Upright box that holds it, along the direction of its greatest extent. O(1).
+    [[nodiscard]] geometry::Shape box() const noexcept;
 
 private:
     void add_means(float n, const std::array<float, 7>& means) noexcept;
@@ -81,6 +83,24 @@ private:
     float n_ = 0.0F;
     /// Of x, y, z, xx, xy, yy and zz. Means and not sums: single precision keeps them for any number of points.
     std::array<float, 7> means_{};
+};
+
+/// Upright box about surfaces, its sides along a given level direction and across it.
+class CloudBounds {
+public:
+    /// @param direction  0 to pi [rad]
+    explicit CloudBounds(float direction) noexcept : direction_(direction) {}
+    /// O(1).
+    void add(const CloudSurface& surface) noexcept;
+    /// At least one surface was added. Wider by what single precision rounds, 1 cm; no half extent is below
+    /// `least_half` [m].
+    [[nodiscard]] geometry::Shape box(float least_half) const noexcept;
+
+private:
+    float direction_;
+    Interval along_;
+    Interval across_;  ///< along the direction a quarter turn to the left
+    Interval height_;
 };
 
 /// What is known of a direction.
@@ -96,9 +116,9 @@ struct CloudBin {
     State state = State::unseen;
     std::array<CloudSurface, kLayers> layers{};  ///< what is nearer, and what is seen past it
 
-    /// A hit (radius 0), or a sphere that is known from before. It joins the surface to which it is close, or is one of
-    /// its own; of three the two become one between which least lies for their range. O(kAxes).
-    void add(const Vec3& point, float radius) noexcept;
+    /// A hit, or what is known from before. It joins the surface to which it is close, or is one of its own; of three
+    /// the two become one between which least lies for their range. O(kAxes).
+    void add(const CloudSurface& added) noexcept;
 };
 
 }  // namespace jink::app

@@ -177,6 +177,88 @@ TEST_F(CloudLaws, NoObstacleReachesMuchNearerThanWhatWasHit)
     EXPECT_LT(much_nearer, judged / 40);
 }
 
+/// How far a box or an upright capsule reaches past the plane `normal * p = away`, towards the origin [m].
+double before_plane(const geometry::Shape& shape, const P& normal, double away)
+{
+    const P local = shape.axes.cast<double>().transpose() * normal;
+    const double reach =
+        local.cwiseAbs().dot(shape.half.cast<double>()) +
+        (shape.kind == geometry::ShapeKind::box ? 0.0 : static_cast<double>(shape.radius) * local.head<2>().norm());
+    return away - (normal.dot(shape.centre.cast<double>()) - reach);
+}
+
+/// An upright wall at any slant, as a sensor with noise sees it.
+struct Wall {
+    Vec3 normal;
+    float away = 0.0F;
+    std::vector<Hit> hits;
+};
+
+Wall random_wall(Random& random)
+{
+    const float angle = random.uniform(-kPi, kPi);
+    Wall wall{Vec3(std::cos(angle), std::sin(angle), 0.0F), random.uniform(3.0F, 12.0F), {}};
+    const Vec3 across(-wall.normal.y(), wall.normal.x(), 0.0F);
+    const float left = random.uniform(-20.0F, 0.0F);
+    const float right = left + random.uniform(4.0F, 30.0F);
+    for (float azimuth = -kPi; azimuth < kPi; azimuth += 0.035F) {
+        for (float elevation = -0.6F; elevation < 0.6F; elevation += 0.05F) {
+            const Vec3 ray(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+                           std::sin(elevation));
+            const float steep = ray.dot(wall.normal);
+            const Vec3 point = ray * (wall.away / std::max(steep, 0.01F));
+            if (steep > 0.01F && point.dot(across) > left && point.dot(across) < right) {
+                wall.hits.push_back(hit_at(point + 0.02F * random.normal() * ray));
+            }
+        }
+    }
+    return wall;
+}
+
+/// Seen, and when no ray sees it any more: obstacles stand out of it by little. An obstacle is at least 0.5 m thick;
+/// what is about as wide becomes a pillar.
+TEST_F(CloudLaws, AnUprightWallStaysThin)
+{
+    Random random(20261128);
+    std::array<std::size_t, 2> judged{};
+    std::array<std::size_t, 2> thick{};
+    for (int scene = 0; scene < 1000; ++scene) {
+        const Wall wall = random_wall(random);
+        if (wall.hits.size() < 50) {
+            continue;
+        }
+        scan(wall.hits, 0.0F);
+        CloudView view;
+        view.is_placed = true;
+        view.half_extents = Vec3(1, 1, 1);
+        for (const std::size_t later : {0U, 1U}) {
+            if (later == 1) {
+                view.yaw = random.uniform(-kPi, kPi);
+                view.position = Vec3(random.normal(), random.normal(), 0.0F);
+                image->look_from(view);
+                image->begin_scan({});
+                image->end_scan(1000);
+            }
+            for (const world::Obstacle& o : table->obstacles()) {
+                const double out = before_plane(o.shape, wall.normal.cast<double>(), static_cast<double>(wall.away));
+                ASSERT_LT(out, later == 0 ? 1.1 : 1.6) << "scene " << scene << " later " << later;
+                ++judged[later];
+                thick[later] += out > 0.4 ? 1 : 0;
+            }
+            for (const Hit& hit : wall.hits) {
+                ASSERT_TRUE(std::ranges::any_of(
+                    table->obstacles(),
+                    [&](const world::Obstacle& o) { return outside(o.shape, hit.point.cast<double>()) <= 1e-3; }))
+                    << "scene " << scene << " later " << later;
+            }
+        }
+    }
+    EXPECT_GT(judged[0], 1000U);
+    EXPECT_LT(thick[0], judged[0] / 40);
+    EXPECT_GT(judged[1], 1000U);
+    EXPECT_LT(thick[1], judged[1] / 6);
+}
+
 TEST_F(CloudLaws, EveryRayIsCountedOnce)
 {
     Random random(20261125);

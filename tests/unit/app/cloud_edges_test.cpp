@@ -102,7 +102,7 @@ TEST_F(CloudEdges, AnObstacleIsAsWideAsWhatWasSeen)
         return shape.kind == geometry::ShapeKind::capsule ? Vec3(shape.radius, shape.radius, shape.half.z())
                                                           : shape.half;
     };
-    // 6 degrees at 40 m are 4.19 m across; between two of the directions in which extents are kept a fifth more.
+    // 6 degrees at 40 m are 4.19 m across; between two of the directions in which extents are kept a tenth more.
     EXPECT_NEAR(half_of({at(2, 8, range), at(8, 8, range)}).x(), 2.07F, 0.05F);
     EXPECT_NEAR(half_of({at(8, 8, range), at(2, 8, range)}).x(), 2.07F, 0.05F);
     EXPECT_NEAR(half_of({at(5, 13, range), at(5, 7, range)}).z(), 2.06F, 0.05F);
