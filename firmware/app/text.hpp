@@ -17,7 +17,8 @@ struct Hex {
 /// images. What does not fit is cut off.
 class Text {
 public:
-    Text& operator<<(std::string_view part) noexcept
+    /// Out of line: texts are put together in many places, and images are small.
+    [[gnu::noinline]] Text& operator<<(std::string_view part) noexcept
     {
         for (const char c : part) {
             if (size_ < buffer_.size()) {
