@@ -182,7 +182,7 @@ void Coprocessor::report_state(TimePoint now, std::span<const world::Track> trac
     if (StepLog* const log = outbox_.log(); log != nullptr) {
         report.bytes_out = outbox_.last_written();
         log->end({now, report, own_.measured(), tracks, params_.parameters(), diagnostics_, decision_.diagnostics(),
-                  is_line_free},
+                  last_plan(), last_duration_us_, is_line_free},
                  link_);
     }
     telemetry_.prepare_last_words(now, of);

@@ -50,8 +50,13 @@ public:
 
     StepReport step(TimePoint now) noexcept;
 
-    /// What the last step took, on a board that counts it [cycles]: the longest is reported to whoever asks for a text.
-    void note_cycles(std::uint32_t cycles) noexcept { telemetry_.note_cycles(cycles); }
+    /// What the last step took, on a board that counts it: the longest is reported to whoever asks for a text, and each
+    /// stands in the log. @param per_us  cycles of a microsecond, > 0
+    void note_cycles(std::uint32_t cycles, std::uint32_t per_us) noexcept
+    {
+        telemetry_.note_cycles(cycles);
+        last_duration_us_ = cycles / per_us;
+    }
     /// From here on every step prepares the texts of a fault handler, before it sends anything. They outlive this.
     void keep_last_words(hal::LastWords& words) noexcept { telemetry_.keep_last_words(words); }
     /// From here on this log may be asked for over the link (LOGGING_START). It outlives this.
@@ -141,6 +146,16 @@ public:
     /// For studies on a bench: settings that no parameter reaches. The next change of a parameter takes them back.
     [[nodiscard]] geometric::Planner& planner() noexcept { return decision_.methods().planner<GeometricMethod>(); }
 #endif
+    /// The geometric planner's, for logs. No result where the image is built without the planner.
+    [[nodiscard]] LastPlan last_plan() const noexcept
+    {
+#ifndef JINK_WITHOUT_GEOMETRIC
+        const CountingPlanner& asked = decision_.methods().planner<GeometricMethod>();
+        return {&asked.last(), asked.plans()};
+#else
+        return {};
+#endif
+    }
 #ifndef JINK_WITHOUT_REACH
     [[nodiscard]] const reach::Planner& reach_planner() const noexcept
     {
@@ -199,6 +214,7 @@ private:
     Telemetry telemetry_;
     std::optional<TimePoint> last_step_;
     std::uint16_t last_faults_ = 0;
+    std::uint32_t last_duration_us_ = 0;  ///< of the step before; 0: not counted
     bool passive_ = false;
 };
 

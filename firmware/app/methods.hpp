@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <tuple>
 #include <type_traits>
 
@@ -12,11 +13,29 @@
 
 namespace jink::app {
 
+/// The planner, which counts its plans: as long as their number stays, `last` is of one and the same.
+class CountingPlanner final : public geometric::Planner {
+public:
+    using Planner::Planner;
+
+    [[nodiscard]] world::PlanStatus plan(const world::Situation& situation, WorkBudget& budget,
+                                         world::Manoeuvre& out) noexcept
+    {
+        ++plans_;
+        return Planner::plan(situation, budget, out);
+    }
+    /// Begun so far.
+    [[nodiscard]] std::uint32_t plans() const noexcept { return plans_; }
+
+private:
+    std::uint32_t plans_ = 0;
+};
+
 /// Each method with the settings that it takes from the parameters.
 struct GeometricMethod {
     explicit GeometricMethod(const Configuration& c) noexcept : planner(c.planner) {}
     void configure(const Configuration& c) noexcept { static_cast<void>(planner.configure(c.planner)); }
-    geometric::Planner planner;
+    CountingPlanner planner;
 };
 struct ReachMethod {
     explicit ReachMethod(const Configuration& c) noexcept : planner(c.reach) {}

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string_view>
 
 #include "core/avoid/guidance.hpp"
+#include "core/geometric/planner.hpp"
 #include "firmware/app/diagnostics.hpp"
 #include "firmware/app/step_report.hpp"
 #include "firmware/link/link.hpp"
@@ -12,6 +14,12 @@
 namespace jink::app {
 
 class Parameters;  // parameters.hpp depends on the methods of an image, this does not
+
+/// The geometric planner's last plan, which the next one overwrites.
+struct LastPlan {
+    const geometric::Result* result = nullptr;  ///< null: the image is built without the planner
+    std::uint32_t number = 0;                   ///< of plans begun: another one, another result
+};
 
 /// What a log reads of a step.
 struct LoggedStep {
@@ -22,7 +30,9 @@ struct LoggedStep {
     const Parameters& parameters;
     const Diagnostics& counts;
     const avoid::Diagnostics& supervisor_counts;
-    bool is_line_free;  ///< the port is open and has taken all bytes of the steps before
+    LastPlan plan;
+    std::uint32_t duration_us;  ///< of the step before; 0: not counted
+    bool is_line_free;          ///< the port is open and has taken all bytes of the steps before
 };
 
 /// A log that goes out over the link. It reads what the co-processor does and changes none of it.

@@ -53,8 +53,10 @@ void settle_map(app::Coprocessor& coprocessor) noexcept;
 [[nodiscard]] bool settle_faults(app::Coprocessor& coprocessor, hal::Clock& clock) noexcept;
 
 /// Steps for ever, and counts the cycles of each step; `before_step` services the ports once per tick.
+/// @param processor_clock  [Hz], at least 1 MHz
 template <class Clock, class BeforeStep>
-[[noreturn]] void fly(app::Coprocessor& coprocessor, Clock& clock, bool passive, BeforeStep before_step) noexcept
+[[noreturn]] void fly(app::Coprocessor& coprocessor, Clock& clock, std::uint32_t processor_clock, bool passive,
+                      BeforeStep before_step) noexcept
 {
     const std::int64_t start = clock.now_us();
     const hal::cortex_m::CycleCounter counter(hal::cortex_m::MappedRegisters(0xE0000000));
@@ -63,7 +65,7 @@ template <class Clock, class BeforeStep>
         const std::uint32_t began = counter.cycles();
         static_cast<void>(coprocessor.step({now}));
         if (counter.is_there()) {
-            coprocessor.note_cycles(counter.cycles() - began);
+            coprocessor.note_cycles(counter.cycles() - began, processor_clock / 1'000'000);
         }
         if (!proven && now - start >= kProvenMicroseconds) {
             proven = true;

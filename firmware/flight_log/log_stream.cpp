@@ -22,7 +22,8 @@ constexpr std::uint32_t kTicks = 50;
 constexpr std::uint32_t kStepTicks = 5;
 constexpr std::uint32_t kOwnAt = 2;  ///< of kStepTicks
 constexpr std::uint32_t kTrackTicks = 25;
-constexpr std::size_t kTracksAtOnce = (kMaxTracks + 15) / 16;  ///< all of them within 16 steps
+constexpr std::size_t kTrackSteps = 16;  ///< all of them within so many
+constexpr int kCandidatesAtOnce = 2;
 constexpr std::uint32_t kAppCountersAt = 19;
 constexpr std::uint32_t kAvoidCountersAt = 23;
 constexpr std::uint32_t kStreamAt = 44;
@@ -31,7 +32,7 @@ constexpr std::uint32_t kStreamAt = 44;
 constexpr std::size_t kMaxContent =
     sizeof(std::uint64_t) + std::max(sizeof(app::Diagnostics), sizeof(avoid::Diagnostics));
 static_assert(kMaxContent >= sizeof(StepTopic) && kMaxContent >= sizeof(TrackTopic) &&
-              kMaxContent >= sizeof(DecisionTopic));
+              kMaxContent >= sizeof(DecisionTopic) && kMaxContent >= sizeof(CandidateTopic));
 
 std::uint64_t stamp_of(TimePoint now) { return static_cast<std::uint64_t>(now.us); }
 
@@ -99,6 +100,7 @@ void LogStream::start(const link::CommandRequest& request, const app::Parameters
     tick_ = 0;
     next_track_ = kMaxTracks;
     last_.reset();
+    candidates_ = {};
     ++counts_.starts;
 }
 
@@ -184,12 +186,12 @@ void LogStream::end(const app::LoggedStep& step, link::Link& link) noexcept
     }
 }
 
-void LogStream::put_content(TopicId id, std::span<const std::byte> content, std::size_t spare) noexcept
+bool LogStream::put_content(TopicId id, std::span<const std::byte> content, std::size_t spare) noexcept
 {
     std::array<std::byte, ulog::kDataHeader + kMaxContent> buffer;
     ulog::Composer message(buffer);
     message.begin(ulog::Type::data).put(id).put_bytes(content);
-    ring_.add(message.end(), now_, spare);
+    return ring_.add(message.end(), now_, spare);
 }
 
 template <class T>
@@ -233,13 +235,16 @@ void LogStream::log_step(const app::LoggedStep& step) noexcept
     if (has_changed || tick_ % kStepTicks == 0) {
         StepTopic topic = step_topic(report, now_, id);
         topic.step = step.counts.steps;
+        topic.duration_us = step.duration_us;
         put(TopicId::step, topic);
     }
     if (has_changed && last_) {
         log_changes(report);
     }
     if (report.guidance.new_manoeuvre) {
-        put(TopicId::decision, decision_topic(report, step.own.position, now_, decisions_));
+        log_decision(step);
+    } else {
+        log_candidates(step.plan);
     }
     last_ = now;
     if (tick_ % kStepTicks == kOwnAt && report.own_source != app::OwnSource::none) {
@@ -268,10 +273,40 @@ void LogStream::log_changes(const app::StepReport& report) noexcept
     }
 }
 
+/// Without its decision a candidate has no place: no candidates follow a decision that was dropped.
+void LogStream::log_decision(const app::LoggedStep& step) noexcept
+{
+    leave_candidates_out();
+    const DecisionTopic topic = decision_topic(step.report, step.own.position, step.plan.result, now_, decisions_);
+    candidates_ = {step.plan.number, 0, topic.candidates};
+    if (!put(TopicId::decision, topic)) {
+        leave_candidates_out();
+    }
+}
+
+/// The next portion of the round.
+void LogStream::log_candidates(const app::LastPlan& plan) noexcept
+{
+    if (plan.number != candidates_.plan) {
+        leave_candidates_out();
+    }
+    for (int i = 0; i < kCandidatesAtOnce && candidates_.next < candidates_.end && ring_.size() <= kCandidatesWait;
+         ++i, ++candidates_.next) {
+        put(TopicId::candidate, candidate_topic(*plan.result, candidates_.next, now_, decisions_));
+    }
+}
+
+void LogStream::leave_candidates_out() noexcept
+{
+    counts_.candidates_left_out += static_cast<std::uint32_t>(candidates_.end - candidates_.next);
+    candidates_.next = candidates_.end;
+}
+
 void LogStream::log_tracks(std::span<const world::Track> tracks) noexcept
 {
     next_track_ = tick_ % kTrackTicks == kOwnAt + 1 ? 0 : next_track_;
-    for (std::size_t i = 0; i < kTracksAtOnce && next_track_ < tracks.size(); ++i, ++next_track_) {
+    const std::size_t at_once = (tracks.size() + kTrackSteps - 1) / kTrackSteps;
+    for (std::size_t i = 0; i < at_once && next_track_ < tracks.size(); ++i, ++next_track_) {
         const world::Track& t = tracks[next_track_];
         put(TopicId::track,
             TrackTopic{stamp_of(now_), t.id, xyz_of(t.position), xyz_of(t.velocity), t.radius, t.half_height,
@@ -289,7 +324,7 @@ void LogStream::log_counters(const app::LoggedStep& step) noexcept
     } else if (tick_ == kStreamAt) {
         put(TopicId::log,
             StreamTopic{stamp_of(now_), ring_.messages(), ring_.dropped(), counts_.parts, counts_.repeated,
-                        counts_.starts, counts_.given_up, ring_.peak()},
+                        counts_.starts, counts_.given_up, ring_.peak(), counts_.candidates_left_out},
             kSpare);
     }
 }

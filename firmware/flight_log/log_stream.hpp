@@ -17,11 +17,12 @@ namespace jink::flightlog {
 
 /// Counters of a stream since the start of the program.
 struct StreamCounts {
-    std::uint32_t starts = 0;    ///< logs begun
-    std::uint32_t refused = 0;   ///< LOGGING_START of a second receiver, or for another format
-    std::uint32_t parts = 0;     ///< queued, repeated ones too
-    std::uint32_t repeated = 0;  ///< parts that were not acknowledged in time
-    std::uint32_t given_up = 0;  ///< logs whose receiver acknowledged no more
+    std::uint32_t starts = 0;               ///< logs begun
+    std::uint32_t refused = 0;              ///< LOGGING_START of a second receiver, or for another format
+    std::uint32_t parts = 0;                ///< queued, repeated ones too
+    std::uint32_t repeated = 0;             ///< parts that were not acknowledged in time
+    std::uint32_t given_up = 0;             ///< logs whose receiver acknowledged no more
+    std::uint32_t candidates_left_out = 0;  ///< another plan came before they went out, or another decision
 };
 
 /// A board's flight log, streamed as ULog over MAVLink to the receiver that asks for it (docs/guides/board_log.md).
@@ -34,9 +35,13 @@ struct StreamCounts {
 /// Line: never more than kLinePercent of it over any time, and one part (link::kMaxLogFrame) more; at most one part a
 /// step, behind all other messages, and only where the port has taken all bytes of the steps before.
 ///
+/// Candidates of a decision go out in a round over the steps after it, as long as the planner's last plan is the same
+/// one. If another plan overwrites them, or another decision comes, the rest of them is left out and counted; the
+/// decision says how many they were.
+///
 /// Memory: sizeof(LogStream), about 2.6 KiB (ring of messages, values of the parameters). No allocation.
-/// Work of a step: at most one part is composed, two tracks, the step, own state, one set of counters, the decision and
-/// two texts; for the changes of parameters all of them are compared. O(kMaxLogPart + parameters).
+/// Work of a step: at most one part is composed, two tracks, the step, own state, one set of counters, the decision,
+/// two candidates and two texts; for the changes of parameters all of them are compared. O(kMaxLogPart + parameters).
 class LogStream final : public app::StepLog {
 public:
     static constexpr std::int64_t kLinePercent = 10;
@@ -48,6 +53,8 @@ public:
     static constexpr std::int64_t kSameStart = 10'000'000;  ///< [us]
     /// Tracks and counters leave so much of the ring to what is decided [bytes].
     static constexpr std::size_t kSpare = 512;
+    /// Candidates wait while more than this waits in the ring [bytes]: they take no place from tracks and counters.
+    static constexpr std::size_t kCandidatesWait = 512;
 
     /// @param baud  of the line, 10 bits a byte
     explicit LogStream(std::uint32_t baud) noexcept : bytes_per_second_(baud / 10 * kLinePercent / 100) {}
@@ -85,6 +92,13 @@ private:
         friend bool operator==(const Last&, const Last&) = default;
     };
 
+    /// Candidates of the last decision that have not gone out.
+    struct Round {
+        std::uint32_t plan = 0;  ///< LastPlan::number
+        std::uint16_t next = 0;
+        std::uint16_t end = 0;
+    };
+
     // All of them compiled for size: a step runs through few hundred bytes of them.
     [[gnu::cold]] void start(const link::CommandRequest& request, const app::Parameters& parameters) noexcept;
     [[gnu::cold]] void stop() noexcept;
@@ -96,18 +110,21 @@ private:
     [[gnu::cold]] void send_data(link::Link& link) noexcept;
     [[gnu::cold]] void log_step(const app::LoggedStep& step) noexcept;
     [[gnu::cold]] void log_changes(const app::StepReport& report) noexcept;
+    [[gnu::cold]] void log_decision(const app::LoggedStep& step) noexcept;
+    [[gnu::cold]] void log_candidates(const app::LastPlan& plan) noexcept;
+    [[gnu::cold]] void leave_candidates_out() noexcept;
     [[gnu::cold]] void log_tracks(std::span<const world::Track> tracks) noexcept;
     [[gnu::cold]] void log_counters(const app::LoggedStep& step) noexcept;
     [[gnu::cold]] void log_parameters(const app::Parameters& parameters) noexcept;
     [[gnu::cold]] void log_text(char level, std::string_view text) noexcept;
     template <class T>
-    void put(TopicId id, const T& topic, std::size_t spare = 0) noexcept
+    bool put(TopicId id, const T& topic, std::size_t spare = 0) noexcept
     {
-        put_content(id, content_of(topic), spare);
+        return put_content(id, content_of(topic), spare);
     }
     template <class T>
     void put_counters(TopicId id, std::span<const Counter<T>> counters, const T& values) noexcept;
-    [[gnu::cold, gnu::noinline]] void put_content(TopicId id, std::span<const std::byte> content,
+    [[gnu::cold, gnu::noinline]] bool put_content(TopicId id, std::span<const std::byte> content,
                                                   std::size_t spare) noexcept;
 
     std::int64_t bytes_per_second_;
@@ -127,6 +144,7 @@ private:
     std::uint32_t tick_ = 0;       ///< of a second
     std::uint32_t decisions_ = 0;  ///< since the start of the program
     std::size_t next_track_ = 0;
+    Round candidates_;
     std::uint32_t generation_ = 0;
     std::optional<Last> last_;  ///< nothing before the first step of a log
 };

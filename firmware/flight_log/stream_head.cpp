@@ -22,6 +22,7 @@ constexpr std::array kTopics = std::to_array<Described>({
     {TopicId::own, OwnTopic::kFormat},
     {TopicId::track, TrackTopic::kFormat},
     {TopicId::decision, DecisionTopic::kFormat},
+    {TopicId::candidate, CandidateTopic::kFormat},
     {TopicId::app_counters, "jink_app_counters:uint64_t timestamp;"},
     {TopicId::avoid_counters, "jink_avoid_counters:uint64_t timestamp;"},
     {TopicId::log, StreamTopic::kFormat},

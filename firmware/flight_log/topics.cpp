@@ -116,9 +116,10 @@ StepTopic step_topic(const app::StepReport& r, TimePoint now, std::uint32_t conf
     return t;
 }
 
-DecisionTopic decision_topic(const app::StepReport& report, const Vec3& own, TimePoint now,
-                             std::uint32_t number) noexcept
+DecisionTopic decision_topic(const app::StepReport& report, const Vec3& own, const geometric::Result* plan,
+                             TimePoint now, std::uint32_t number) noexcept
 {
+    using geometric::CandidateStatus;
     constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
     DecisionTopic t;
     t.timestamp = static_cast<std::uint64_t>(now.us);
@@ -131,12 +132,25 @@ DecisionTopic decision_topic(const app::StepReport& report, const Vec3& own, Tim
         t.threat_at_closest = xyz_of(conflict->threat_at_closest);
         t.radius_at_closest = conflict->radius_at_closest;
     }
+    if (plan != nullptr) {
+        t.candidates = static_cast<std::uint16_t>(plan->candidates.size());
+        if (plan->chosen < plan->candidates.size() &&
+            plan->candidates[plan->chosen].status == CandidateStatus::chosen) {
+            t.chosen = static_cast<std::uint16_t>(plan->chosen);
+        }
+    }
     return t;
 }
 
-CandidateTopic candidate_topic(const geometric::Candidate& c) noexcept
+CandidateTopic candidate_topic(const geometric::Result& plan, std::size_t index, TimePoint now,
+                               std::uint32_t decision) noexcept
 {
+    const geometric::Candidate& c = plan.candidates[index];
     CandidateTopic t;
+    t.timestamp = static_cast<std::uint64_t>(now.us);
+    t.decision = decision;
+    t.index = static_cast<std::uint16_t>(index);
+    t.attempt = static_cast<std::uint8_t>(plan.attempt);
     t.plane = c.shape.plane;
     t.offset = c.shape.offset;
     t.share = c.shape.share;

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "core/avoid/guidance.hpp"
-#include "core/geometric/candidate.hpp"
+#include "core/geometric/planner.hpp"
 #include "firmware/app/diagnostics.hpp"
 #include "firmware/app/step_report.hpp"
 #include "firmware/flight_log/ulog.hpp"
@@ -99,18 +99,21 @@ struct TrackTopic {
     bool cooperative = false;
 };
 
-/// At each new manoeuvre, before its candidates: where their common frame lies, which has its x axis from `start` to
-/// `own_at_closest`. NaN without a conflict.
+/// At each new manoeuvre, before its candidates: how many they are, and where their common frame lies, which has its x
+/// axis from `start` to `own_at_closest`. NaN without a conflict.
 struct DecisionTopic {
+    static constexpr std::uint16_t kNoneChosen = 0xFFFF;
     static constexpr std::string_view kFormat =
         "jink_decision:uint64_t timestamp;uint32_t decision;float[3] start;float[3] own_at_closest;"
-        "float[3] threat_at_closest;float radius_at_closest;";
+        "float[3] threat_at_closest;float radius_at_closest;uint16_t candidates;uint16_t chosen;";
     std::uint64_t timestamp = 0;
     std::uint32_t decision = 0;
     Xyz start{};
     Xyz own_at_closest{};
     Xyz threat_at_closest{};
     float radius_at_closest = 0.0F;
+    std::uint16_t candidates = 0;  ///< of the plan, whether or not all of them are logged
+    std::uint16_t chosen = kNoneChosen;
 };
 
 /// One for each candidate of the geometric planner's last plan, at each new manoeuvre.
@@ -156,7 +159,7 @@ struct LogTopic {
 struct StreamTopic {
     static constexpr std::string_view kFormat =
         "jink_stream:uint64_t timestamp;uint32_t messages;uint32_t dropped;uint32_t parts;uint32_t repeated;"
-        "uint32_t starts;uint32_t given_up;uint32_t ring_peak;";
+        "uint32_t starts;uint32_t given_up;uint32_t ring_peak;uint32_t candidates_left_out;";
     std::uint64_t timestamp = 0;
     std::uint32_t messages = 0;
     std::uint32_t dropped = 0;
@@ -165,6 +168,7 @@ struct StreamTopic {
     std::uint32_t starts = 0;
     std::uint32_t given_up = 0;
     std::uint32_t ring_peak = 0;
+    std::uint32_t candidates_left_out = 0;
 };
 
 /// Ids of the topics, in the order of their subscriptions in a file of jinkd; a board streams some of those before
@@ -213,10 +217,14 @@ template <class T>
 /// @param conflict_id  of the track in conflict; 0: none
 [[nodiscard, gnu::cold]] StepTopic step_topic(const app::StepReport& report, TimePoint now,
                                               std::uint32_t conflict_id) noexcept;
-/// @param own  own position [m]
-[[nodiscard, gnu::cold]] DecisionTopic decision_topic(const app::StepReport& report, const Vec3& own, TimePoint now,
+/// @param own   own position [m]
+/// @param plan  the geometric planner's last one; null: there is no such planner
+[[nodiscard, gnu::cold]] DecisionTopic decision_topic(const app::StepReport& report, const Vec3& own,
+                                                      const geometric::Result* plan, TimePoint now,
                                                       std::uint32_t number) noexcept;
-[[nodiscard]] CandidateTopic candidate_topic(const geometric::Candidate& candidate) noexcept;
+/// @param index  of a candidate of the plan
+[[nodiscard, gnu::cold]] CandidateTopic candidate_topic(const geometric::Result& plan, std::size_t index, TimePoint now,
+                                                        std::uint32_t decision) noexcept;
 
 // Names of numbers in topics and in the status line; "?" for none. Each ends with a zero byte.
 using app::name_of;  // of app::Control

@@ -105,5 +105,5 @@ extern "C" void hal::cortex_m::jink_main()
     firmware::settle_map(coprocessor);
     const bool passive = firmware::settle_faults(coprocessor, clock);
     watchdog.start(kWatchdogTicks);
-    firmware::fly(coprocessor, clock, passive, [] {});
+    firmware::fly(coprocessor, clock, kClockHz, passive, [] {});
 }

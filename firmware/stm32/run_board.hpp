@@ -138,7 +138,7 @@ template <class Board>
     report_start<Board>(coprocessor, clocks, bus != nullptr);
     watchdog.start(kWatchdogMilliseconds);
     guarded.feed();
-    fly(coprocessor, clock, passive, [] {
+    fly(coprocessor, clock, clocks.processor, passive, [] {
         Board::service_bus();
         keeper.work(coprocessor, {clock.now_us()});
     });

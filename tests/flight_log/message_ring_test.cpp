@@ -159,7 +159,7 @@ TEST(StreamHead, HaveTheFormatsOfJinkd)
             EXPECT_EQ(streamed->fields[i].count, expected->fields[i].count);
         }
     }
-    EXPECT_EQ(compared, (std::set<std::string>{"jink_step", "jink_own", "jink_track", "jink_decision",
+    EXPECT_EQ(compared, (std::set<std::string>{"jink_step", "jink_own", "jink_track", "jink_decision", "jink_candidate",
                                                "jink_app_counters", "jink_avoid_counters"}));
     ASSERT_NE(reader.topic(7), nullptr);
     EXPECT_EQ(reader.topic(7)->name, "jink_stream");

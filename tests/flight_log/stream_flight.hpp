@@ -25,6 +25,8 @@ struct SentPart {
     std::size_t frame = 0;  ///< bytes on the line
 };
 
+inline int number_of(link::CommandResult result) { return static_cast<int>(result); }
+
 /// Flight with a stream and its receiver, which acknowledges within the same tick.
 class StreamFlight {
 public:
@@ -107,6 +109,8 @@ public:
         }
         return receiver.in_data;
     }
+    /// 45 m ahead, from the next report on.
+    void see_a_mast() { f->obstacles = {f->position + Vec3(0.0F, 45.0F, 0.0F)}; }
     bool happens(double chance) { return std::uniform_real_distribution<>(0.0, 1.0)(random) < chance; }
 
     std::unique_ptr<Flight> f;

@@ -171,10 +171,14 @@ TEST(UlogPeer, ReadsALogThatABoardStreams)
         ASSERT_TRUE(s.begin());
         ASSERT_EQ(s.ask(StreamFlight::kStart), StreamFlight::kAccepted);
         ASSERT_TRUE(s.fly_to_data());
-        s.f->obstacles = {s.f->position + Vec3(0.0F, 45.0F, 0.0F)};
+        s.see_a_mast();
         s.fly(600);
         ASSERT_GT(s.manoeuvres, 0) << "nothing was decided";
         ASSERT_EQ(s.receiver.lost > 0, loss > 0.0);
+        const Lines lines = own_lines(s.receiver.file);
+        EXPECT_GT(std::count_if(lines.begin(), lines.end(),
+                                [](const auto& line) { return line.starts_with("jink_candidate "); }),
+                  8);
         expect_the_same(s.receiver.file, 200);
     }
 }

@@ -239,22 +239,14 @@ void FlightLog::put_counters(const app::Coprocessor& coprocessor, TimePoint now)
         LogTopic{stamp_of(now), counts.messages, counts.dropped, counts.write_failures, counts.files, counts.peak});
 }
 
-void FlightLog::put_candidates(const app::Coprocessor& coprocessor, TimePoint now) noexcept
+void FlightLog::put_decision(const app::StepReport& report, const app::Coprocessor& coprocessor, TimePoint now) noexcept
 {
-#ifndef JINK_WITHOUT_GEOMETRIC
-    const geometric::Result& result = coprocessor.planner().last();
-    for (std::size_t i = 0; i < result.candidates.size(); ++i) {
-        CandidateTopic topic = candidate_topic(result.candidates[i]);
-        topic.timestamp = stamp_of(now);
-        topic.decision = decisions_;
-        topic.index = static_cast<std::uint16_t>(i);
-        topic.attempt = static_cast<std::uint8_t>(result.attempt);
-        put(TopicId::candidate, topic);
+    const geometric::Result* const plan = coprocessor.last_plan().result;
+    const DecisionTopic decision = decision_topic(report, coprocessor.own().position, plan, now, decisions_);
+    put(TopicId::decision, decision);
+    for (std::size_t i = 0; i < decision.candidates; ++i) {
+        put(TopicId::candidate, candidate_topic(*plan, i, now, decisions_));
     }
-#else
-    static_cast<void>(coprocessor);
-    static_cast<void>(now);
-#endif
 }
 
 void FlightLog::put_changes(const app::StepReport& report, std::uint32_t id, TimePoint now) noexcept
@@ -325,8 +317,7 @@ void FlightLog::end(const app::StepReport& report, app::Coprocessor& coprocessor
     }
     if (report.guidance.new_manoeuvre) {
         ++decisions_;
-        put(TopicId::decision, decision_topic(report, coprocessor.own().position, began, decisions_));
-        put_candidates(coprocessor, began);
+        put_decision(report, coprocessor, began);
     }
     if (!has_generation_ || coprocessor.parameters().generation() != generation_) {
         put_changed_parameters(coprocessor.parameters());

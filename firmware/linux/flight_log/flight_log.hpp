@@ -90,7 +90,7 @@ private:
     template <class T>
     void put_counters_of(TopicId id, std::span<const Counter<T>> counters, const T& diagnostics,
                          TimePoint now) noexcept;
-    void put_candidates(const app::Coprocessor& coprocessor, TimePoint now) noexcept;
+    void put_decision(const app::StepReport& report, const app::Coprocessor& coprocessor, TimePoint now) noexcept;
     void put_changes(const app::StepReport& report, std::uint32_t conflict_id, TimePoint now) noexcept;
     void put_changed_parameters(const app::Parameters& parameters) noexcept;
 

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstring>
 #include <map>
+#include <numeric>
 #include <sstream>
 
 #include <unistd.h>
@@ -63,12 +64,23 @@ private:
     std::size_t next_ = 0;
 };
 
+template <class T>
+T topic_of(std::span<const std::byte> content)
+{
+    T topic;
+    std::memcpy(static_cast<void*>(&topic), content.data(), std::min(content.size(), sizeof topic));
+    return topic;
+}
+
 /// @return whether the file is whole and has the flight
 bool holds_the_flight(const std::string& file, double seconds)
 {
     std::istringstream in(file);
     ulog::Reader reader(in);
     std::map<std::string, unsigned> topics;
+    std::map<std::uint32_t, unsigned> lacking;  // candidates of each decision
+    std::uint32_t left_out = 0;
+    bool is_timed = false;
     bool controlled = false;
     while (const auto message = reader.next()) {
         if (message->type != ulog::Type::data) {
@@ -76,21 +88,34 @@ bool holds_the_flight(const std::string& file, double seconds)
         }
         const std::string& name = reader.topic(ulog::read_number<std::uint16_t>(message->content))->name;
         ++topics[name];
+        const std::span<const std::byte> content = message->content.subspan(2);
         if (name == "jink_step") {
-            flightlog::StepTopic step;
-            std::memcpy(static_cast<void*>(&step), message->content.data() + 2, message->content.size() - 2);
+            const auto step = topic_of<flightlog::StepTopic>(content);
             controlled = controlled || step.control == static_cast<std::uint8_t>(app::Control::ours);
+            is_timed = is_timed || step.duration_us != 0;
+        } else if (name == "jink_decision") {
+            const auto decision = topic_of<flightlog::DecisionTopic>(content);
+            lacking[decision.decision] = decision.candidates;
+        } else if (name == "jink_candidate") {
+            --lacking[topic_of<flightlog::CandidateTopic>(content).decision];
+        } else if (name == "jink_stream") {
+            left_out = topic_of<flightlog::StreamTopic>(content).candidates_left_out;
         }
     }
     for (const auto& [name, count] : topics) {
         std::printf("%s %u\n", name.c_str(), count);
     }
     std::printf("end: %s\n", std::string(ulog::to_string(reader.end())).c_str());
+    const unsigned missing = std::accumulate(lacking.begin(), lacking.end(), 0U,
+                                             [](unsigned sum, const auto& decision) { return sum + decision.second; });
+    std::printf("candidates missing: %u, left out: %u\n", missing, left_out);
     const auto least = [&](const char* name, double per_second) {
         return topics[name] >= static_cast<unsigned>(per_second * seconds);
     };
-    return reader.end() == ulog::End::complete && controlled && topics["jink_decision"] > 0 &&
-           least("jink_step", 9.0) && least("jink_own", 9.0) && least("jink_app_counters", 0.8);
+    // The emulated processor counts no cycles.
+    return reader.end() == ulog::End::complete && controlled && !is_timed && topics["jink_decision"] > 0 &&
+           topics["jink_candidate"] > 8 && missing == left_out && least("jink_step", 9.0) && least("jink_own", 9.0) &&
+           least("jink_app_counters", 0.8);
 }
 
 }  // namespace

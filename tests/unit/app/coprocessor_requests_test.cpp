@@ -337,7 +337,7 @@ TEST_F(CoprocessorRequests, TheLongestStepIsReportedOnRequest)
     };
     EXPECT_EQ(result(), static_cast<int>(link::CommandResult::denied));
     for (const std::uint32_t cycles : {70'000U, 123'456U, 80'000U}) {
-        f.coprocessor.note_cycles(cycles);
+        f.coprocessor.note_cycles(cycles, 168);
     }
     EXPECT_EQ(result(), static_cast<int>(link::CommandResult::accepted));
     int texts = reported();
