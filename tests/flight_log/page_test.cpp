@@ -8,6 +8,8 @@
 #include <random>
 
 #include "tests/flight_log/recorded_flight.hpp"
+#include "tests/flight_log/stream_content.hpp"
+#include "tests/flight_log/stream_flight.hpp"
 #include "tests/host/scratch.hpp"
 #include "toolchain/host/flight_page.hpp"
 #include "toolchain/sim/in_process.hpp"
@@ -166,6 +168,123 @@ TEST(FlightPage, DamagedLogsGiveAPageOrAReason)
     EXPECT_GT(refused, 0U);
 }
 
+/// A log that a board streamed.
+const std::string& board_log()
+{
+    static const std::string file = [] {
+        StreamFlight s;
+        EXPECT_TRUE(s.begin());
+        EXPECT_EQ(s.ask(StreamFlight::kStart), StreamFlight::kAccepted);
+        EXPECT_TRUE(s.fly_to_data());
+        s.see_a_mast();
+        s.fly(1'000);
+        return s.receiver.file;
+    }();
+    return file;
+}
+
+/// The log without the messages of a topic for which `lacks` holds. Sizes and types of messages: the ULog format.
+template <class T, class Lacks>
+std::string without(const std::string& log, jink::flightlog::TopicId topic, Lacks lacks)
+{
+    const auto byte = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<unsigned char>(log[i])); };
+    std::string kept = log.substr(0, 16);
+    for (std::size_t at = 16, size = 0; at + 5 <= log.size(); at += size) {
+        size = 3 + byte(at) + 256 * byte(at + 1);
+        const bool is_of_topic = log[at + 2] == 'D' && byte(at + 3) + 256 * byte(at + 4) == std::size_t(topic);
+        const auto message = std::as_bytes(std::span(log)).subspan(at + 3, size - 3);
+        if (!is_of_topic || !lacks(topic_of<T>(message))) {
+            kept += log.substr(at, size);
+        }
+    }
+    return kept;
+}
+
+template <class Lacks>
+std::string without_candidates(const std::string& log, Lacks lacks)
+{
+    return without<jink::flightlog::CandidateTopic>(log, jink::flightlog::TopicId::candidate, lacks);
+}
+
+std::size_t count_of(const host::PageDecision& decision, host::Fate fate)
+{
+    return static_cast<std::size_t>(std::count_if(decision.candidates.begin(), decision.candidates.end(),
+                                                  [&](const auto& candidate) { return candidate.fate == fate; }));
+}
+
+TEST(FlightPage, ABoardsLogHasItsCandidates)
+{
+    const Scratch scratch;
+    const host::PageFlight flight = page_of(scratch, board_log());
+    ASSERT_GT(flight.decisions.size(), 0U);
+    std::size_t chosen = 0;
+    for (const host::PageDecision& decision : flight.decisions) {
+        EXPECT_GT(decision.candidates.size(), 8U);
+        EXPECT_EQ(decision.known, static_cast<double>(decision.candidates.size()));
+        EXPECT_TRUE(decision.text.starts_with("guidance ")) << decision.text;
+        for (const host::PageCandidate& candidate : decision.candidates) {
+            EXPECT_EQ(candidate.points.x.size(), 25U);
+        }
+        chosen += count_of(decision, host::Fate::chosen);
+    }
+    EXPECT_GT(chosen, 0U);
+    ASSERT_EQ(flight.threats.size(), 1U);
+    const auto& x = flight.threats[0].position.x;
+    EXPECT_EQ(std::count_if(x.begin(), x.end(), [](double value) { return std::isnan(value); }), 0) << x.size();
+}
+
+TEST(FlightPage, CandidatesThatTheLogLacksAreCountedAndTheOthersKeepTheirFate)
+{
+    using jink::flightlog::CandidateTopic;
+    using jink::flightlog::DecisionTopic;
+    const Scratch scratch;
+    const host::PageDecision whole = page_of(scratch, board_log()).decisions.at(0);
+    ASSERT_EQ(count_of(whole, host::Fate::chosen), 1U);
+    ASSERT_GT(count_of(whole, host::Fate::more_expensive), 0U);
+    const auto chosen = static_cast<std::uint8_t>(jink::geometric::CandidateStatus::chosen);
+    // Without the chosen one the rest was still not checked because of it.
+    const std::string headless = without_candidates(board_log(), [&](const auto& c) { return c.status == chosen; });
+    const host::PageDecision rest = page_of(scratch, headless).decisions.at(0);
+    EXPECT_EQ(rest.candidates.size() + 1, whole.candidates.size());
+    EXPECT_EQ(rest.known, whole.known);
+    EXPECT_EQ(count_of(rest, host::Fate::more_expensive), count_of(whole, host::Fate::more_expensive));
+    EXPECT_EQ(count_of(rest, host::Fate::budget_spent), count_of(whole, host::Fate::budget_spent));
+    // None of them.
+    const std::string none = without_candidates(board_log(), [](const auto&) { return true; });
+    const host::PageDecision bare = page_of(scratch, none).decisions.at(0);
+    EXPECT_TRUE(bare.candidates.empty());
+    EXPECT_EQ(bare.known, whole.known);
+    // The decision itself: neither curves nor their number are known.
+    const std::string lost =
+        without<DecisionTopic>(board_log(), jink::flightlog::TopicId::decision, [](const auto&) { return true; });
+    const std::vector<host::PageSource> sources{host::read_flight_log(scratch.write("lost.ulg", lost))};
+    const host::PageDecision& unknown = sources[0].flights[0].decisions.at(0);
+    EXPECT_TRUE(unknown.candidates.empty());
+    EXPECT_TRUE(std::isnan(unknown.known));
+    EXPECT_NE(host::page_data(sources).find("\"candidates_known\":null"), std::string::npos);
+}
+
+/// Logs of before have neither their number nor the chosen one in the decision: they are complete.
+TEST(FlightPage, ALogThatDoesNotSayHowManyCandidatesThereAreIsTakenAsComplete)
+{
+    std::string log = page_flight().log;
+    const std::string fields = "uint16_t candidates;uint16_t chosen;";
+    const std::size_t at = log.find(fields);
+    ASSERT_NE(at, std::string::npos);
+    log.replace(at, fields.size(), "uint16_t something1;uint16_t other1;");
+    const Scratch scratch;
+    const host::PageFlight before = page_of(scratch, log);
+    const host::PageFlight now = page_of(scratch, page_flight().log);
+    ASSERT_EQ(before.decisions.size(), now.decisions.size());
+    for (std::size_t i = 0; i < now.decisions.size(); ++i) {
+        EXPECT_EQ(before.decisions[i].known, now.decisions[i].known);
+        ASSERT_EQ(before.decisions[i].candidates.size(), now.decisions[i].candidates.size());
+        for (std::size_t k = 0; k < now.decisions[i].candidates.size(); ++k) {
+            EXPECT_EQ(before.decisions[i].candidates[k].fate, now.decisions[i].candidates[k].fate);
+        }
+    }
+}
+
 /// The same scenario twice, the second time with other parameters.
 void write_runs(const Scratch& scratch)
 {
@@ -188,6 +307,10 @@ TEST(FlightPage, ShowsItAllInABrowser)
     const Scratch scratch;
     write_runs(scratch);
     static_cast<void>(scratch.write("flight.ulg", page_flight().log));
+    // Of its first decision every third candidate is missing.
+    static_cast<void>(scratch.write("board.ulg", without_candidates(board_log(), [](const auto& candidate) {
+                                        return candidate.decision == 1 && candidate.index % 3 == 0;
+                                    })));
     sim::Scenario seen = sim::load_scenario(JINK_SCENARIOS "/scan_wall.yaml");
     seen.duration = 14.0;
     seen.areas = sim::load_scenario(JINK_SCENARIOS "/storm_crossing.yaml").areas;

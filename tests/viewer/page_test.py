@@ -4,7 +4,7 @@
 
     page_test.py --jink PROGRAM --input FOLDER
 
-FOLDER has run.json and changed.json (jink-sim), flight.ulg and wall.ulg (jinkd), the latter with obstacles and closed areas; pages are written there. What is shown is held
+FOLDER has run.json and changed.json (jink-sim), board.ulg (a board, candidates missing), flight.ulg and wall.ulg (jinkd), the latter with obstacles and closed areas; pages are written there. What is shown is held
 against run.json itself and against the tables of `jink log --csv`. Exit status 77: nothing to test with.
 """
 import argparse
@@ -30,11 +30,11 @@ def expect(condition, what):
         print(f"FAILED: {what}", flush=True)
 
 
-def fates(candidates):
-    """Number of candidates of each fate: (status, has a cost) of all candidates of one plan."""
+def fates(candidates, has_chosen=False):
+    """Number of candidates of each fate: (status, has a cost) of the candidates of one plan, of which one is chosen, here or not."""
     names = {"chosen": "chosen", "available": "clear", "hits_static": "contact", "hits_moving": "contact", "hits_airspace": "contact",
              "not_flyable": "not_flyable"}
-    found = any(status == "chosen" for status, _ in candidates)
+    found = has_chosen or any(status == "chosen" for status, _ in candidates)
     return dict(collections.Counter(names.get(status, "more_expensive" if found and has_cost else "budget_spent")
                                     for status, has_cost in candidates))
 
@@ -222,6 +222,29 @@ def check_log(page, tables):
     expect(texts and not [t for t in texts if t not in shown and t != "jinkd starts"], f"all texts are among the events: {len(texts)} of {len(shown)}")
 
 
+def check_board(page, tables):
+    """The page of a board's log: candidates that the log lacks are missing, and nothing else is said of the others."""
+    names = ["available", "chosen", "hits_static", "hits_moving", "hits_airspace", "not_flyable", "not_evaluated"]
+    rows = {}
+    for topic in ("decision", "candidate"):
+        with open(tables / f"jink_{topic}.csv", encoding="utf-8") as file:
+            rows[topic] = list(csv.DictReader(file))
+    decisions = page.run("jinkViewer.state().flight.decisions.map(d => d.time)")
+    expect(len(decisions) == len(rows["decision"]) > 0, f"board: decisions {decisions}")
+    lacking = 0
+    for time, decision in zip(decisions, rows["decision"]):
+        page.run(f"jinkViewer.charts.onTime({time})")
+        found = [c for c in rows["candidate"] if c["decision"] == decision["decision"]]
+        expected = fates([(names[int(c["status"])], float(c["time"]) > 0) for c in found], decision["chosen"] != "65535")
+        expect(shown_fates(page) == expected, f"board: legend {shown_fates(page)}, expected {expected}")
+        expect(sum(lines_by_fate(page).values()) == len(found), "board: every candidate is a line")
+        text, known = page.run("document.getElementById('decision').textContent"), int(decision["candidates"])
+        said = f"{len(found)} of {known} candidates" in text and f"{known - len(found)} are missing" in text
+        expect(said == (len(found) < known), f"board: {len(found)} of {known} candidates, and the page says: {text}")
+        lacking += len(found) < known
+    expect(lacking > 0, "board: the log lacks candidates")
+
+
 def turned(q, v):
     """v turned by the unit quaternion w, x, y, z."""
     w, x, y, z = q
@@ -331,6 +354,8 @@ def main():
     jink("report", "run.json", "changed.json", "--out", "two.html")
     jink("report", "flight.ulg")
     jink("log", "--csv", "tables", "flight.ulg")
+    jink("report", "board.ulg")
+    jink("log", "--csv", "board_tables", "board.ulg")
     jink("report", "wall.ulg")
     jink("log", "--csv", "wall_tables", "wall.ulg")
     run = json.loads((folder / "run.json").read_text(encoding="utf-8"))
@@ -343,6 +368,7 @@ def main():
         # Every page with WebGL costs seconds of shader compilation.
         for name, check in (("two", lambda: (check_run(page, run), check_keys(page), check_comparison(page))),
                             ("flight", lambda: check_log(page, folder / "tables")),
+                            ("board", lambda: check_board(page, folder / "board_tables")),
                             ("wall", lambda: check_shapes(page, folder / "wall_tables"))):
             page.open(folder / f"{name}.html")
             check()

@@ -84,7 +84,10 @@ Json json(const PageDecision& decision)
         }
         candidates.push_back(one);
     }
-    return {{"time", number(decision.time)}, {"text", decision.text}, {"candidates", candidates}};
+    return {{"time", number(decision.time)},
+            {"text", decision.text},
+            {"candidates_known", number(decision.known)},
+            {"candidates", candidates}};
 }
 
 Json json(const PageThreat& threat)

@@ -40,6 +40,7 @@ struct PageDecision {
     double time = 0.0;
     std::string text;
     std::vector<PageCandidate> candidates;
+    double known = kUnknown;  ///< candidates of the plan, those that the input does not have too
 };
 
 /// A path that conflicts were looked for along.

@@ -98,9 +98,11 @@ private:
     [[nodiscard]] std::optional<double> time_of(double microseconds);
     [[noreturn]] void refuse(const std::string& why) const { throw BadFlight(file_.string() + ": " + why); }
 
-    struct Curve {
-        std::array<double, 3> start{}, to{};
-        bool is_known = false;
+    /// Of a decision's own message.
+    struct Made {
+        std::array<double, 3> start{}, to{};  ///< of the curves of its candidates; not finite: unknown
+        double candidates = kUnknown;         ///< of its plan; unknown: the log does not say
+        bool has_chosen = false;              ///< one of them
     };
 
     std::filesystem::path file_;
@@ -112,7 +114,7 @@ private:
     std::vector<StepAt> steps_;
     std::map<unsigned, std::vector<Sighting>> tracks_;
     std::map<unsigned, std::size_t> decision_of_;  // number in the log: index in flight_.decisions
-    std::map<unsigned, Curve> curve_of_;
+    std::map<unsigned, Made> made_;                // by the number too; those whose message is there
     NominalLog nominal_;
     ShapeLog shapes_;
     double lookahead_ = 8.0;
@@ -164,37 +166,42 @@ void LogFlight::note_decision(const LogFields& topic, double time)
 {
     const unsigned number = topic.code("decision");
     static_cast<void>(decision(number, time));
-    Curve curve;
-    curve.start = topic.vector("start");
-    curve.to = topic.vector("own_at_closest");
-    curve.is_known =
-        std::isfinite(curve.start[0] + curve.start[1] + curve.start[2] + curve.to[0] + curve.to[1] + curve.to[2]);
-    curve_of_[number] = curve;
+    made_[number] = {topic.vector("start"), topic.vector("own_at_closest"), topic.number("candidates"),
+                     topic.number("chosen") < flightlog::DecisionTopic::kNoneChosen};
 }
 
 void LogFlight::note_candidate(const LogFields& topic, double time)
 {
     const unsigned number = topic.code("decision");
-    PageCandidate candidate;
+    PageDecision& of = decision(number, time);
+    const auto made = made_.find(number);
+    if (made == made_.end()) {  // the log lost its message: neither its curve nor how many there are is known
+        return;
+    }
+    PageCandidate& candidate = of.candidates.emplace_back();
     const bool has_cost = topic.number("time") > 0.0;
     candidate.cost = has_cost ? topic.number("cost") : kUnknown;
     candidate.fate = flightlog::fate_of(static_cast<CandidateStatus>(topic.code("status")));  // settle_fates
     const unsigned family = topic.code("family");
-    if (const Curve& curve = curve_of_[number]; curve.is_known && family < geometric::kFamilies.size()) {
+    if (family < geometric::kFamilies.size()) {
         geometric::CandidateShape shape;
         shape.family = static_cast<geometric::Family>(family);
         shape.plane = static_cast<float>(topic.number("plane"));
         shape.offset = static_cast<float>(topic.number("offset"));
-        candidate.points = flightlog::candidate_curve(shape, curve.start, curve.to);
+        candidate.points = flightlog::candidate_curve(shape, made->second.start, made->second.to);
     }
-    decision(number, time).candidates.push_back(std::move(candidate));
 }
 
+/// What the whole set of a decision's candidates says, or the decision in place of those that the log lost. A log of
+/// before says neither how many there are nor which one was chosen: it has all of them.
 void LogFlight::settle_fates()
 {
-    for (PageDecision& decision : flight_.decisions) {
-        const bool found = std::any_of(decision.candidates.begin(), decision.candidates.end(),
-                                       [](const PageCandidate& c) { return c.fate == Fate::chosen; });
+    for (const auto& [number, made] : made_) {
+        PageDecision& decision = flight_.decisions[decision_of_.at(number)];
+        decision.known = std::fmax(made.candidates, static_cast<double>(decision.candidates.size()));
+        const bool found =
+            made.has_chosen || std::any_of(decision.candidates.begin(), decision.candidates.end(),
+                                           [](const PageCandidate& c) { return c.fate == Fate::chosen; });
         for (PageCandidate& c : decision.candidates) {
             if (c.fate == Fate::budget_spent) {
                 c.fate = fate_of_unchecked(std::isfinite(c.cost), found, c.cost > max_cost_);
@@ -357,7 +364,7 @@ PageFlight LogFlight::page()
     }
     for (PageDecision& decision : flight_.decisions) {
         for (const PageEvent& event : flight_.events) {
-            if (event.time == decision.time && event.text.find(", new manoeuvre") != std::string::npos) {
+            if (event.time == decision.time && event.text.starts_with("guidance ")) {
                 decision.text = event.text;
             }
         }

@@ -246,6 +246,7 @@ PageDecision read_decision(const Node& node)
         candidate.fate = fate_of(one["status"], cost > 0.0, found);
         candidate.points = flightlog::candidate_curve(shape_of(one), start, to);
     }
+    decision.known = static_cast<double>(candidates.size());
     return decision;
 }
 

@@ -50,7 +50,7 @@ void note_data(const ulog::Format& format, std::span<const std::byte> content, L
     ++summary.topics[format.name];
     if (format.name == "jink_step" && format.size == flightlog::kBytesOf<flightlog::StepTopic>) {
         note_step(content, summary);
-    } else if (format.name.ends_with("_counters") || format.name == "jink_log") {
+    } else if (format.name.ends_with("_counters") || format.name == "jink_log" || format.name == "jink_stream") {
         note_counters(format, content, summary);
     }
 }
@@ -119,8 +119,12 @@ void print_log_summary(const std::string& name, const LogSummary& s, std::ostrea
     };
     out << name << ": " << info("sys_name") << " " << info("ver_sw") << ", run " << info("jink_run") << ", file "
         << info("jink_file") << "\n";
-    print("  duration %.1f s, %u steps, step mean %.1f us, max %u us\n", s.duration, s.steps, s.mean_step,
-          s.longest_step);
+    print("  duration %.1f s, %u steps, ", s.duration, s.steps);
+    if (s.longest_step > 0) {
+        print("step mean %.1f us, max %u us\n", s.mean_step, s.longest_step);
+    } else {
+        print("their durations were not measured\n");
+    }
     print("  %" PRIu64 " messages, %" PRIu64 " dropouts of %.1f s\n", s.messages, s.dropouts, s.dropout_time);
     out << "  end: " << ulog::to_string(s.end) << ", " << s.end_offset << " bytes read\n";
     out << "  set-up:";

@@ -54,7 +54,7 @@ export class LiveFlight {
   takeDecision(decision) {
     if (!decision || decision.number === this.lastDecision) return;
     this.lastDecision = decision.number;
-    for (const older of this.decisions) older.candidates = [];
+    for (const older of this.decisions) Object.assign(older, { candidates: [], candidates_known: 0 });
     const said = this.events.find((e) => e.time === decision.time && e.text.includes(", new manoeuvre"));
     this.decisions.push({ ...decision, text: said ? said.text : "" });
   }

@@ -67,9 +67,10 @@ export function candidateKeys(decision) {
 /** The line under that legend. */
 export function decisionText(decision) {
   if (!decision) return "";
-  const when = measure(decision.time, "s", 1), shown = decision.candidates.length, known = decision.candidates_known || shown;
-  return !shown ? `Decision at ${when}: ${decision.text}`
-    : `Candidates of the geometric planner at ${when}${known > shown ? ` (${shown} of ${known})` : ""}. ${decision.text}`;
+  const when = measure(decision.time, "s", 1), shown = decision.candidates.length, known = decision.candidates_known ?? shown;
+  if (decision.candidates_known === null) return `Decision at ${when}: the log lost it, and with it what its candidates were. ${decision.text}`;
+  if (known > shown) return `${shown} of ${known} candidates of the geometric planner at ${when}: ${known - shown} are missing here. ${decision.text}`;
+  return !known ? `Decision at ${when}: ${decision.text}` : `Candidates of the geometric planner at ${when}. ${decision.text}`;
 }
 
 const SVG = "http://www.w3.org/2000/svg";
