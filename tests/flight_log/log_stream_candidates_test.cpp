@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <memory>
+#include <optional>
 #include <random>
 
+#include "firmware/app/plan_memory.hpp"
+#include "firmware/app/work_rate.hpp"
 #include "tests/flight_log/candidate_bench.hpp"
 #include "tests/flight_log/stream_flight.hpp"
 
@@ -98,6 +102,56 @@ TEST(LogStreamCandidates, AreThoseOfThePlannerAtEachManoeuvre)
             }
             EXPECT_LT(read.back().timestamp - decision.timestamp, aircraft > 0 ? 3'000'000U : 600'000U);
         }
+    }
+}
+
+/// In one piece and in slices, as a board plans: from a decision on the planner's last plan is the same to the last bit
+/// as long as its number is, and the plan after it has another number.
+TEST(LogStreamCandidates, APlanHasItsNumberAlone)
+{
+    const auto plans = std::make_unique<app::PlanMemory>();
+    for (const bool slices : {false, true}) {
+        SCOPED_TRACE(slices);
+        StreamFlight s;
+        if (slices) {
+            ASSERT_TRUE(s.f->coprocessor.plan_in_slices(plans->plan, app::WorkRate::of_megahertz(168).work()));
+        }
+        ASSERT_TRUE(s.begin());
+        std::optional<std::uint32_t> number;
+        std::string had;
+        const auto content = [&] {
+            const geometric::Result& plan = *s.f->coprocessor.last_plan().result;
+            std::string bytes;
+            for (std::size_t i = 0; i < plan.candidates.size(); ++i) {
+                const CandidateTopic topic = flightlog::candidate_topic(plan, i, {}, 0);
+                const auto view = flightlog::content_of(topic);
+                bytes.append(reinterpret_cast<const char*>(view.data()), view.size());
+            }
+            return bytes;
+        };
+        int kept = 0;
+        int overwritten = 0;
+        for (int i = 0; i < 4'000; ++i) {
+            if (i % 600 == 0) {
+                s.see_a_mast();
+                s.f->obstacles.push_back(s.f->position + Vec3(12.0F, 60.0F, 0.0F));
+            }
+            s.tick();
+            const std::uint32_t now = s.f->coprocessor.last_plan().number;
+            if (number && *number == now) {
+                ASSERT_EQ(content(), had) << "step " << i;
+                ++kept;
+            } else if (number) {
+                overwritten += content() != had ? 1 : 0;
+                number.reset();
+            }
+            if (s.f->last.guidance.new_manoeuvre) {
+                number = now;
+                had = content();
+            }
+        }
+        EXPECT_GT(kept, 50);
+        EXPECT_GT(overwritten, 1);
     }
 }
 
