@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 
 #include "core/base/work_units.hpp"
+#include "core/world/cost_to_go.hpp"
 #include "core/world/passing_side.hpp"
 #include "core/world/threat_set.hpp"
 
@@ -100,8 +102,14 @@ ManoeuvreCost cost_of(const world::Situation& s, const world::Manoeuvre& manoeuv
     const float ahead = std::min(place.arc_length + s.rules.lookahead * speed, length);
     world::Situation fixed = s;
     fixed.threats = world::of_kind(s.threats, world::ThreatKind::obstacle);
-    if (!fixed.threats.empty() && (!budget.spend(point_units) || is_blocked(fixed, flight.back().position,
-                                                                            route.at(ahead).position, speed, budget))) {
+    const std::optional<Seconds> lost = s.cost_to_go != nullptr && budget.spend(units::kLost)
+                                            ? s.cost_to_go->lost_from(flight.back().position)
+                                            : std::nullopt;
+    if (lost) {
+        cost.dead_end = *lost;
+    } else if (!fixed.threats.empty() &&
+               (!budget.spend(point_units) ||
+                is_blocked(fixed, flight.back().position, route.at(ahead).position, speed, budget))) {
         cost.dead_end = kDeadEnd;
     }
     return cost;

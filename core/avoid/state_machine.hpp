@@ -43,6 +43,8 @@ public:
     [[nodiscard]] const Diagnostics& diagnostics() const noexcept { return diagnostics_; }
     /// What is being flown, or was offered last while not in control; null when nothing is.
     [[nodiscard]] const world::Manoeuvre* flying() const noexcept { return flying_ ? &*flying_ : nullptr; }
+    /// A plan has begun and goes on in the next update.
+    [[nodiscard]] bool plan_runs() const noexcept { return sliced_ != nullptr && sliced_->runs(); }
 
 private:
     struct Tick;  // what one update carries along
@@ -58,7 +60,6 @@ private:
     void watch(Tick& tick) noexcept;
     void keep_stoppable(Tick& tick) noexcept;
     [[nodiscard]] bool plan(Tick& tick, bool hurries, std::uint8_t only = 0) noexcept;
-    [[nodiscard]] bool plan_runs() const noexcept { return sliced_ != nullptr && sliced_->runs(); }
     [[nodiscard]] std::uint32_t units_for_planning(const Tick& tick) const noexcept;
     [[nodiscard]] MethodOrder order_for(const Tick& tick) const noexcept;
     static void charge_planning(Tick& tick, std::uint32_t units) noexcept;

@@ -49,6 +49,8 @@ public:
     void plan_in_whole() noexcept { machine_.plan_in_whole(); }
     /// Drops what is planned at present: before a method is configured anew.
     void drop_plan() noexcept { machine_.drop_plan(); }
+    /// A plan has begun and goes on in the next update.
+    [[nodiscard]] bool plan_runs() const noexcept { return machine_.plan_runs(); }
     /// Refused (false, nothing changed) when out of range.
     [[nodiscard]] bool configure(const Settings& settings) noexcept { return machine_.configure(settings); }
     [[nodiscard]] const Settings& settings() const noexcept { return machine_.settings(); }

@@ -112,6 +112,14 @@ inline constexpr std::uint32_t kReachScanCell = 20;     ///< cell of a set or of
 inline constexpr std::uint32_t kTableElements = 10;  ///< 32 numbers of a table that is checked
 inline constexpr std::uint32_t kTableNumbers = 20;   ///< and the numbers of a vehicle's sets
 
+// --- cost to go (core/world/cost_to_go_field) ---
+inline constexpr std::uint32_t kFieldSweep = 1;  ///< cell that is swept, blocked or not
+inline constexpr std::uint32_t kFieldMark = 1;   ///< cell that is checked against a block
+inline constexpr std::uint32_t kFieldCells =
+    1;                                      ///< two cells whose bounds are checked, or where the goal is looked for
+inline constexpr std::uint32_t kLost = 30;  ///< what obstacles cost from a place on
+inline constexpr std::uint32_t kWayAround = 320;  ///< a point on the way past them
+
 // --- maps of convex pieces (core/geometry/mesh_map) ---
 inline constexpr std::uint32_t kMeshNode = 2;  ///< node of the tree that is checked: both its children's boxes
 

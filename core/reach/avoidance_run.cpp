@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/base/finite.hpp"
 #include "core/base/work_units.hpp"
 #include "core/world/conflict.hpp"
+#include "core/world/cost_to_go.hpp"
 #include "core/world/route_way.hpp"
 
 namespace jink::reach {
@@ -22,6 +24,10 @@ constexpr std::array<float, Planner::kHeadings> kTurns{0.0F, kPi / 3.0F, -kPi / 
                                                        -2.0F * kPi / 3.0F};
 /// The goal lies just beyond the grid [its range].
 constexpr float kGoalShare = 1.02F;
+/// A vehicle that hovers begins towards a point of the way past obstacles that is so far away [m], if it is not nearly
+/// above or below: level at least by this share.
+constexpr float kHoverLook = 6.0F;
+constexpr float kMinLevel = 0.1F;
 /// Time steps of the stop at the end of a trajectory.
 constexpr int kStopPieces = 4;
 static_assert(kMaxPathPoints >= 2 * kMaxDepth + 2, "the deepest way has to fit");
@@ -34,9 +40,21 @@ bool fits(const ReachSet* set) noexcept
            set->grid.cells() <= kMaxReachCells && CellSpheres::serves(set->grid);
 }
 
-/// The point of the route that lies `ahead` [m] in front of the vehicle, or its end; of a place, beyond it.
-Vec3 goal_of(const Situation& s, const world::Way& way, float ahead) noexcept
+/// A point on the way past obstacles, where there are any in the way and it is known.
+std::optional<Vec3> way_around(const Situation& s, float distance, WorkBudget& budget) noexcept
 {
+    return s.cost_to_go != nullptr && budget.spend(units::kWayAround)
+               ? s.cost_to_go->way_around(s.own.position, distance)
+               : std::nullopt;
+}
+
+/// The point that lies `ahead` [m] away on the way past obstacles. Where there are none in the way, or that is not
+/// known: of the route, in front of the vehicle, or its end; of a place, beyond it.
+Vec3 goal_of(const Situation& s, const world::Way& way, float ahead, WorkBudget& budget) noexcept
+{
+    if (const std::optional<Vec3> around = way_around(s, ahead, budget)) {
+        return *around;
+    }
     const path::RouteView route = s.reference.route();
     const float length = route.length();
     if (!(length > 0.0F)) {
@@ -108,7 +126,11 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     const float least_speed = sets.speeds.front() * sets.cruise_speed;
     const bool stops = situation.limits.kind == vehicle::VehicleKind::multirotor;
     const bool hovers = stops && own_speed < least_speed;
-    const Vec3 ahead = hovers ? way.direction : velocity;
+    // On the way past what is in the way, where that is known, or else along the nominal path.
+    const std::optional<Vec3> around = hovers ? way_around(situation, kHoverLook, budget) : std::nullopt;
+    const Vec3 along = around ? Vec3(*around - situation.own.position) : way.direction;
+    const bool is_level = std::hypot(along.x(), along.y()) > kMinLevel * along.norm();
+    const Vec3 ahead = hovers ? (is_level ? along : way.direction) : velocity;
     const float level_ahead = std::hypot(ahead.x(), ahead.y());
     const float pitch = hovers ? 0.0F : -std::atan2(velocity.z(), level_ahead);
     const float speed = std::max(own_speed, least_speed);
@@ -257,7 +279,7 @@ PlanStatus Planner::try_set(const Situation& situation, const Placed& placed, co
     };
     evaluate_with(set, blocks, own_level, nodes, cells);
     const float range = placed.unit * set.grid.distance();
-    const Vec3 goal = placed.to_set(goal_of(situation, start.way, kGoalShare * range));
+    const Vec3 goal = placed.to_set(goal_of(situation, start.way, kGoalShare * range, budget));
     const ChoiceRule rule{false, settings_.least_outer_layer};
     path::TimedPath path;
     for (int i = 0; i < settings_.tries && !budget.exhausted(); ++i) {

@@ -20,8 +20,8 @@ enum class PointStatus : std::uint8_t { counted, beyond, outside, not_a_number }
 /// Memory: 6 bytes for each of kCells cells, 6 for each of kDirections.
 class LidarScan {
 public:
-    static constexpr std::size_t kCells = 512;      ///< capacity for the cells of a grid
-    static constexpr std::size_t kDirections = 64;  ///< capacity for columns times rows
+    static constexpr std::size_t kCells = 2560;      ///< capacity for the cells of a grid
+    static constexpr std::size_t kDirections = 256;  ///< capacity for columns times rows
 
     /// @param grid  its unit of length is that of the points; outlives this
     /// @param horizontal_pitch, vertical_pitch  between neighbouring rays [rad], > 0

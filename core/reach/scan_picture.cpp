@@ -13,6 +13,9 @@ namespace {
 /// Sample points of a cell lie at these shares of each of its ranges.
 constexpr std::array<float, 2> kInside{0.25F, 0.75F};
 
+/// Of a number of columns.
+constexpr float kRounding = 1e-3F;
+
 /// Any hit is an obstacle, whatever its size.
 constexpr float kAnyHit = 1e-3F;
 
@@ -53,7 +56,7 @@ private:
     }
 
     const Grid<float>& grid_;
-    std::array<Eigen::Vector2f, kPerAxis * kMaxColumns> across_;
+    std::array<Eigen::Vector2f, kPerAxis * CellFinder::kMaxFinderColumns> across_;
     std::array<Eigen::Vector2f, kPerAxis * kMaxRows> up_;
 };
 
@@ -117,15 +120,20 @@ private:
 
 bool ScanPicture::configure(const Grid<float>& sets) noexcept
 {
-    const std::size_t columns = sets.columns() + 2 * kSpareColumns;
-    const float horizontal = sets.horizontal() * static_cast<float>(columns) / static_cast<float>(sets.columns());
     known_ = counts_ = false;
-    has_grid_ = sets.cells() > 0 && columns * sets.rows() <= LidarScan::kDirections &&
-                sets.layers() * columns * sets.rows() <= LidarScan::kCells;
-    if (has_grid_) {
-        grid_ = Grid<float>(sets.layers(), columns, sets.rows(), sets.distance(), horizontal, sets.vertical());
+    has_grid_ = false;
+    if (sets.cells() == 0) {
+        return false;
+    }
+    const auto all_around = kPi / sets.horizontal() * static_cast<float>(sets.columns());
+    // An odd number: one of them lies about the nose.
+    const std::size_t columns = static_cast<std::size_t>(std::ceil(all_around - kRounding)) | 1U;
+    const Grid<float> around(sets.layers(), columns, sets.rows(), sets.distance(), kPi, sets.vertical());
+    if (columns <= LidarScan::kDirections && columns * around.rows() <= LidarScan::kDirections &&
+        around.cells() <= LidarScan::kCells && CellFinder::serves(around)) {
+        grid_ = around;
         finder_ = CellFinder(grid_);
-        has_grid_ = CellFinder::serves(grid_);
+        has_grid_ = true;
     }
     return has_grid_;
 }
@@ -133,24 +141,17 @@ bool ScanPicture::configure(const Grid<float>& sets) noexcept
 bool ScanPicture::begin(const ScanStart& start) noexcept
 {
     const std::size_t filled = 1 - seen_;
-    counts_ = has_grid_ && is_finite(start.position) && std::isfinite(start.nose) && std::isfinite(start.course) &&
-              is_positive(start.unit) && scans_[filled].configure(grid_, start.horizontal_pitch, start.vertical_pitch);
+    counts_ = has_grid_ && is_finite(start.position) && std::isfinite(start.nose) && is_positive(start.unit) &&
+              scans_[filled].configure(grid_, start.horizontal_pitch, start.vertical_pitch);
     start_[filled] = start;
     fired_.fill(0);
-    cosine_ = std::cos(start.nose - start.course);
-    sine_ = std::sin(start.nose - start.course);
     return counts_;
 }
 
-Vec3 ScanPicture::in_grid(const Vec3& point) const noexcept
-{
-    return {cosine_ * point.x() - sine_ * point.y(), sine_ * point.x() + cosine_ * point.y(), point.z()};
-}
-
 /// False for a ray outside the grid's directions.
-bool ScanPicture::note_ray(const Vec3& in_grid, CellPlace& place) noexcept
+bool ScanPicture::note_ray(const Vec3& ray, CellPlace& place) noexcept
 {
-    if (!finder_.find_direction(in_grid, place)) {
+    if (!finder_.find_direction(ray, place)) {
         return false;
     }
     std::uint16_t& fired = fired_[place.column * grid_.rows() + place.row];
@@ -161,7 +162,7 @@ bool ScanPicture::note_ray(const Vec3& in_grid, CellPlace& place) noexcept
 void ScanPicture::add(const Vec3& point) noexcept
 {
     CellPlace place;
-    const Vec3 turned = in_grid(point) / start_[1 - seen_].unit;
+    const Vec3 turned = point / start_[1 - seen_].unit;
     if (!counts_ || !is_finite(turned) || !note_ray(turned, place)) {
         return;
     }
@@ -176,7 +177,7 @@ void ScanPicture::add_nothing(const Vec3& direction) noexcept
 {
     CellPlace place;
     if (counts_ && is_finite(direction)) {
-        static_cast<void>(note_ray(in_grid(direction), place));
+        static_cast<void>(note_ray(direction, place));
     }
 }
 
@@ -193,7 +194,6 @@ void ScanPicture::end() noexcept
 void ScanPicture::judge() noexcept
 {
     const LidarScan& scan = scans_[seen_];
-    hits_ = 0;
     std::array<float, kMaxLayers> visible{};
     for (std::size_t column = 0; column < grid_.columns(); ++column) {
         for (std::size_t row = 0; row < grid_.rows(); ++row) {
@@ -206,7 +206,6 @@ void ScanPicture::judge() noexcept
                                       static_cast<std::uint8_t>(row)};
                 const bool hit = scan.obstacle(place, kAnyHit) >= kThreshold;
                 const bool seen = looks && visible[layer] >= 1.0F - kThreshold;
-                hits_ += hit ? 1U : 0U;
                 cells_[grid_.index(place)] = hit ? Cell::hit : seen ? Cell::free : Cell::unseen;
             }
         }
@@ -222,8 +221,8 @@ Placed ScanPicture::frame() const noexcept
 {
     Placed placed;
     placed.origin = start_[seen_].position;
-    placed.cosine = std::cos(start_[seen_].course);
-    placed.sine = std::sin(start_[seen_].course);
+    placed.cosine = std::cos(start_[seen_].nose);
+    placed.sine = std::sin(start_[seen_].nose);
     placed.unit = start_[seen_].unit;
     return placed;
 }
@@ -235,11 +234,13 @@ RateStatus ScanPicture::rate(const world::Situation& situation, const Placed& pl
     if (!is_fresh(situation.now, kFresh) || !CellFinder::serves(sets)) {
         return is_known() && blocks_unseen_ ? RateStatus::blind : RateStatus::nothing_known;
     }
-    if (!budget.spend(static_cast<std::uint32_t>(units::kReachScanCell * (sets.cells() + hits_)))) {
+    CellBits near{};
+    if (!budget.spend(static_cast<std::uint32_t>(units::kReachScanCell * (1 + grid_.cells() / kFindShare))) ||
+        !budget.spend(static_cast<std::uint32_t>(units::kReachScanCell * (sets.cells() + find_near(placed, near))))) {
         return RateStatus::budget_spent;
     }
     look_from(placed, blocks);
-    lay_over(placed, blocks);
+    lay_over(placed, near, blocks);
     return RateStatus::rated;
 }
 
@@ -275,8 +276,47 @@ void ScanPicture::look_from(const Placed& placed, std::span<Level> blocks) const
     }
 }
 
+/// The cells that were hit and may lie in a cell of the set, and their number.
+std::size_t ScanPicture::find_near(const Placed& placed, CellBits& near) const noexcept
+{
+    const Grid<float>& sets = placed.set->grid;
+    const Map map(frame(), placed);
+    const float scale = start_[seen_].unit / placed.unit;
+    const float across =
+        0.5F * std::hypot(grid_.column_start(1) - grid_.column_start(0), grid_.row_start(1) - grid_.row_start(0));
+    const float thickness = grid_.layer_end(0);
+    // Outward normals of the set's sides; a set of more than half a turn has none that part the space.
+    const bool is_narrow = sets.horizontal() <= 0.5F * kPi;
+    const float sine = std::sin(sets.horizontal());
+    const float cosine = std::cos(sets.horizontal());
+    std::size_t count = 0;
+    for (std::size_t column = 0; column < grid_.columns(); ++column) {
+        for (std::size_t row = 0; row < grid_.rows(); ++row) {
+            const Vec3 along = map.along(
+                from_polar(Polar<float>{1.0F, 0.5F * (grid_.column_start(column) + grid_.column_start(column + 1)),
+                                        0.5F * (grid_.row_start(row) + grid_.row_start(row + 1))}));
+            for (std::size_t layer = 0; layer < grid_.layers(); ++layer) {
+                const CellIndex cell = grid_.index({static_cast<std::uint8_t>(layer), static_cast<std::uint8_t>(column),
+                                                    static_cast<std::uint8_t>(row)});
+                if (cells_[cell] != Cell::hit) {
+                    continue;
+                }
+                const float end = grid_.layer_end(layer);
+                const float radius = scale * (end * across + 0.5F * thickness);
+                const Vec3 at = map.offset() + (end - 0.5F * thickness) * along;
+                const float past_side = std::abs(at.y()) * cosine - at.x() * sine;
+                if (at.norm() - radius <= sets.distance() && !(is_narrow && past_side > radius)) {
+                    near[cell / 32U] |= std::uint32_t{1} << (cell % 32U);
+                    ++count;
+                }
+            }
+        }
+    }
+    return count;
+}
+
 /// Blocks the cells of the set in which the hit cells lie.
-void ScanPicture::lay_over(const Placed& placed, std::span<Level> blocks) const noexcept
+void ScanPicture::lay_over(const Placed& placed, const CellBits& near, std::span<Level> blocks) const noexcept
 {
     constexpr std::size_t kPerAxis = InnerPoints::kPerAxis;
     const InnerPoints points(grid_);
@@ -284,7 +324,7 @@ void ScanPicture::lay_over(const Placed& placed, std::span<Level> blocks) const 
     const Map map(frame(), placed);
     Places places(finder);
     for (std::size_t i = 0; i < grid_.cells(); ++i) {
-        if (cells_[i] != Cell::hit) {
+        if ((near[i / 32] >> (i % 32) & 1U) == 0) {
             continue;
         }
         const CellPlace place = grid_.place(static_cast<CellIndex>(i));

@@ -5,7 +5,7 @@
 #include "core/reach/cell_source.hpp"
 #include "core/reach/lidar_scan.hpp"
 
-// The newest scan of a range sensor, counted by cells of a grid of its own, and its ratings for a set that is placed
+// The newest scan of a range sensor, counted by cells of a grid all around, and its ratings for a set that is placed
 // elsewhere a short time later.
 
 namespace jink::reach {
@@ -13,24 +13,23 @@ namespace jink::reach {
 /// Where and how a scan is made.
 struct ScanStart {
     TimePoint stamp;
-    Vec3 position = Vec3::Zero();   ///< [m]
-    float nose = 0.0F;              ///< direction of the points' x axis, counter-clockwise from east [rad]
-    float course = 0.0F;            ///< direction of the grid's x axis [rad]
-    float unit = 1.0F;              ///< thickness of its layers [m], > 0
+    Vec3 position = Vec3::Zero();  ///< [m]
+    float nose = 0.0F;  ///< direction of the points' and the grid's x axis, counter-clockwise from east [rad]
+    float unit = 1.0F;  ///< thickness of its layers [m], > 0
     float horizontal_pitch = 0.0F;  ///< between neighbouring rays [rad], > 0
     float vertical_pitch = 0.0F;
 };
 
-/// Memory: that of two LidarScans, about 7 KiB: one is filled while the other is read.
+/// All around, because a vehicle that hovers may leave in any direction.
+///
+/// Memory: that of two LidarScans, about 36 KiB: one is filled while the other is read.
 class ScanPicture final : public CellSource {  // NOLINT(cppcoreguidelines-virtual-class-destructor): final
 public:
-    /// Additional columns to either side of a set's, so that the course may change between scan and plan.
-    static constexpr std::size_t kSpareColumns = 1;
     /// Least share of a direction's rays that must be fired: the number of rays varies a little between directions.
     static constexpr float kSeenShare = 0.75F;
 
-    /// Layers, columns and rows as the sets', plus kSpareColumns. False if that exceeds the capacity of a LidarScan;
-    /// the picture then stays without a scan.
+    /// Layers and rows as the sets', and columns all around that are no wider. False if that exceeds the capacity of a
+    /// LidarScan or a CellFinder; the picture then stays without a scan.
     [[nodiscard]] bool configure(const Grid<float>& sets) noexcept;
 
     /// Begins a new scan; a previous scan without its end is discarded. False if the scan cannot be used: no grid,
@@ -57,26 +56,31 @@ public:
     /// Rates cells by the picture alone: obstacles where there was a hit and, while unseen cells are blocked, where the
     /// picture does not see all of the cell. Each cell is sampled at eight places, and each place that was hit at nine;
     /// smaller overlaps of cells are left to the exact checks. A picture older than kFresh counts as no picture; while
-    /// unseen cells are blocked, as blindness. O(cells of the set + cells hit).
+    /// unseen cells are blocked, as blindness. O(cells of the set + cells hit near to them).
     [[nodiscard]] RateStatus rate(const world::Situation& situation, const Placed& placed, const CellSpheres& spheres,
                                   Seconds lead, std::span<Level> blocks, WorkBudget& budget) noexcept override;
 
+    /// Cells whose work rate() pays at most, but where more than 512 hit cells lie near a set: twice what the picture
+    /// has within a set's angles.
+    static constexpr std::size_t kRatedCells = kMaxReachCells + 512 + LidarScan::kCells / 32;
     /// Largest age of a usable picture [s].
     static constexpr Seconds kFresh = 0.5F;
 
 private:
+    /// To find which of so many cells are near to a set takes the work of laying one over it.
+    static constexpr std::size_t kFindShare = 32;
+
     [[nodiscard]] Placed frame() const noexcept;
-    [[nodiscard]] Vec3 in_grid(const Vec3& point) const noexcept;
     [[nodiscard]] bool note_ray(const Vec3& in_grid, CellPlace& place) noexcept;
     void judge() noexcept;
+    using CellBits = std::array<std::uint32_t, (LidarScan::kCells + 31) / 32>;
+    [[nodiscard]] std::size_t find_near(const Placed& placed, CellBits& near) const noexcept;
     void look_from(const Placed& placed, std::span<Level> blocks) const noexcept;
-    void lay_over(const Placed& placed, std::span<Level> blocks) const noexcept;
+    void lay_over(const Placed& placed, const CellBits& near, std::span<Level> blocks) const noexcept;
 
     Grid<float> grid_;
     CellFinder finder_;
     bool has_grid_ = false;
-    float cosine_ = 1.0F;  ///< from the nose to the course of the scan under way
-    float sine_ = 0.0F;
     bool blocks_unseen_ = true;
     bool counts_ = false;  ///< a usable scan has begun
     bool known_ = false;
@@ -86,7 +90,6 @@ private:
     std::array<std::uint16_t, LidarScan::kDirections> fired_{};  ///< of the scan under way
     enum class Cell : std::uint8_t { free, unseen, hit };
     std::array<Cell, LidarScan::kCells> cells_{};  ///< of the picture
-    std::size_t hits_ = 0;                         ///< number of cells with hits
 };
 
 }  // namespace jink::reach

@@ -6,8 +6,8 @@ namespace jink::world {
 void Snapshot::take(const Situation& situation) noexcept
 {
     // Does not compile when a field is added that it does not know.
-    const auto& [now, own, limits, airframe, reference, rules, threats, flying, own_id, commanded, shared_horizon] =
-        situation;
+    const auto& [now, own, limits, airframe, reference, rules, threats, flying, own_id, commanded, shared_horizon,
+                 cost_to_go] = situation;
     now_ = now;
     own_ = own;
     limits_ = limits;
@@ -16,6 +16,7 @@ void Snapshot::take(const Situation& situation) noexcept
     rules_ = rules;
     own_id_ = own_id;
     shared_horizon_ = shared_horizon;
+    cost_to_go_ = cost_to_go;
     flying_.reset();
     if (flying != nullptr) {
         flying_.emplace(*flying);
@@ -52,12 +53,18 @@ Situation Snapshot::situation() const noexcept
 {
     const std::span<const Threat> threats =
         collected_ ? std::span<const Threat>(threats_.data(), threats_.size()) : std::span<const Threat>();
-    return {now_,           own_,
-            limits_,        airframe_,
-            reference_,     rules_,
-            threats,        flying_ ? &*flying_ : nullptr,
-            own_id_,        commanded_ ? &*commanded_ : nullptr,
-            shared_horizon_};
+    return {now_,
+            own_,
+            limits_,
+            airframe_,
+            reference_,
+            rules_,
+            threats,
+            flying_ ? &*flying_ : nullptr,
+            own_id_,
+            commanded_ ? &*commanded_ : nullptr,
+            shared_horizon_,
+            cost_to_go_};
 }
 
 }  // namespace jink::world

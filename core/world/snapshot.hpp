@@ -37,6 +37,7 @@ private:
     std::optional<Manoeuvre> flying_;
     std::optional<Commanded> commanded_;
     TrackId own_id_ = 0;
+    const CostToGo* cost_to_go_ = nullptr;
     Seconds shared_horizon_ = std::numeric_limits<Seconds>::infinity();
     bool collected_ = false;
 };

@@ -11,6 +11,7 @@
 #include "core/path/route.hpp"
 #include "core/path/timed_path.hpp"
 #include "core/vehicle/vehicle.hpp"
+#include "core/world/cost_to_go.hpp"
 #include "core/world/cylinder.hpp"
 #include "core/world/flight_rules.hpp"
 #include "core/world/threat.hpp"
@@ -158,6 +159,7 @@ struct Situation {
     /// Cooperative tracks are checked so far ahead in separations, and not beyond [s]: what they do then
     /// depends on both. Conflicts are not bounded by it.
     Seconds shared_horizon = std::numeric_limits<Seconds>::infinity();
+    const CostToGo* cost_to_go = nullptr;  ///< of the way past obstacles; null: not known. It does not change meanwhile
 };
 
 /// A situation is copied with something else in one of its places by this function alone. It does not compile when a
@@ -166,8 +168,9 @@ struct Situation {
                                          const Reference& reference) noexcept
 {
     const auto& [now, own, other_limits, airframe, other_reference, rules, threats, flying, own_id, commanded,
-                 shared_horizon] = s;
-    return {now, own, limits, airframe, reference, rules, threats, flying, own_id, commanded, shared_horizon};
+                 shared_horizon, cost_to_go] = s;
+    return {now,     own,    limits, airframe,  reference,      rules,
+            threats, flying, own_id, commanded, shared_horizon, cost_to_go};
 }
 [[nodiscard]] inline Situation with_limits(const Situation& s, const vehicle::VehicleLimits& limits) noexcept
 {

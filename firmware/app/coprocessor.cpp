@@ -29,7 +29,7 @@ Coprocessor::Coprocessor(link::Link& link, hal::SerialPort& port, hal::Watchdog&
 void Coprocessor::let_reach_sets_see(ReachPicture& picture) noexcept
 {
     picture_.show_scans_in(picture);
-    decision_.let_reach_sets_see(picture.picture(), params_.configuration());
+    decision_.let_reach_sets_see(picture, params_.configuration());
 }
 
 void Coprocessor::apply_configuration() noexcept

@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "firmware/app/decision.hpp"
 
+#include <algorithm>
+
 #include "core/base/work_units.hpp"
-#include "core/reach/lidar_scan.hpp"
+#include "core/reach/scan_picture.hpp"
 
 namespace jink::app {
 namespace {
 
 /// What a plan by reach sets takes more where they see by a scan, at most; that is for computers that have LiDARs. A
 /// vehicle that hardly moves lays the scan over each of its courses.
-constexpr auto kScanUnits = static_cast<std::uint32_t>(reach::Planner::kHeadings * units::kReachScanCell *
-                                                       (kMaxReachCells + reach::LidarScan::kCells));
+constexpr auto kScanUnits =
+    static_cast<std::uint32_t>(reach::Planner::kHeadings * units::kReachScanCell * reach::ScanPicture::kRatedCells);
+
+/// Of a step, for the way past the obstacles: among houses it takes about twenty steps.
+constexpr std::uint32_t kWayUnits = 20'000;
 
 }  // namespace
 
@@ -21,7 +26,7 @@ avoid::Settings Decision::supervisor_settings(const Configuration& c) const noex
     if (leaves_reach_out_ || c.reach_unsuited) {
         settings.order = without_sets(settings.order);
     }
-    if (reach_sees_scans_) {
+    if (sight_ != nullptr) {
         // Laying a scan over a set would take most of what a plan may, and a way through clutter takes more than the
         // rest: reach sets have a whole plan's units to themselves, and the checks and fallbacks keep theirs.
         const std::uint32_t more = kScanUnits + settings.plan_budget;
@@ -41,6 +46,9 @@ avoid::Guidance Decision::update(const DecisionInput& input, const Configuration
     situation.own_id = input.own_track;
     static_cast<void>(threats_.collect(situation, input.around));
     situation.threats = threats_.all();
+    if (sight_ != nullptr) {
+        situation.cost_to_go = &sight_->way_of(situation, supervisor_.plan_runs());
+    }
     const avoid::Guidance guidance = supervisor_.update(situation, input.in_control, nominal_.other());
     nominal_.note(guidance.conflict.has_value(), guidance.on_other);
     return guidance;
@@ -49,6 +57,12 @@ avoid::Guidance Decision::update(const DecisionInput& input, const Configuration
 Progress Decision::advance_background(std::uint32_t spent, const Configuration& c) noexcept
 {
     static_assert(BackgroundService<reach::TableCheck>);
+    if (sight_ != nullptr && supervisor_.settings().work.all > spent) {
+        const std::uint32_t left = supervisor_.settings().work.all - spent;
+        WorkBudget budget(std::min(left, kWayUnits));
+        sight_->advance(budget);
+        spent += budget.spent();
+    }
     Progress progress = Progress::running;
     methods_.with_planner<ReachMethod>([&](const reach::Planner& planner) {
         const reach::VehicleSets* const sets = planner.settings().sets;
@@ -75,6 +89,9 @@ void Decision::reset() noexcept
 {
     supervisor_.reset();
     nominal_.reset();
+    if (sight_ != nullptr) {
+        sight_->forget_way();
+    }
 }
 
 void Decision::configure(const Configuration& c) noexcept
@@ -101,11 +118,11 @@ void Decision::leave_out_reach_sets(const Configuration& c) noexcept
     static_cast<void>(supervisor_.configure(supervisor_settings(c)));
 }
 
-void Decision::let_reach_sets_see(reach::CellSource& cells, const Configuration& c) noexcept
+void Decision::let_reach_sets_see(Sight& sight, const Configuration& c) noexcept
 {
     methods_.with_planner<ReachMethod>([&](reach::Planner& planner) {
-        reach_sees_scans_ = true;
-        planner.look_at(&cells);
+        sight_ = &sight;
+        planner.look_at(&sight.cells());
         static_cast<void>(supervisor_.configure(supervisor_settings(c)));
     });
 }

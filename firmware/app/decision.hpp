@@ -8,6 +8,7 @@
 #include "firmware/app/methods.hpp"
 #include "firmware/app/nominal_paths.hpp"
 #include "firmware/app/parameters.hpp"
+#include "firmware/app/sight.hpp"
 
 namespace jink::app {
 
@@ -36,16 +37,18 @@ public:
 
     /// Another frame, or own state comes from elsewhere.
     void reset() noexcept;
-    /// The background services, one piece with what a step has left of its units; none while it has not enough of
-    /// them. At present: the reach sets' tables (reach::TableCheck). `failed`: they are left out from now on.
+    /// The background services, with what a step has left of its units: the way past the obstacles
+    /// (Sight); and one piece of the check of the reach sets' tables (reach::TableCheck), none while there are not
+    /// enough units. `failed`: the tables are left out from now on.
     [[nodiscard]] Progress advance_background(std::uint32_t spent, const Configuration& c) noexcept;
     /// Somebody else flies: nothing is held on to.
     void reset_supervisor() noexcept { supervisor_.reset(); }
     void configure(const Configuration& c) noexcept;
     /// From now on no plan is made by reach sets, whatever the parameters say.
     void leave_out_reach_sets(const Configuration& c) noexcept;
-    /// From now on reach sets plan by these cells, and every plan may spend more work units. It outlives this.
-    void let_reach_sets_see(reach::CellSource& cells, const Configuration& c) noexcept;
+    /// From now on reach sets plan by its cells, answers are compared by the way past the obstacles, and every plan may
+    /// spend more work units. It outlives this.
+    void let_reach_sets_see(Sight& sight, const Configuration& c) noexcept;
 
     /// From now on plans go on over several updates, in `plan`, and an update does as much as `work` says. It outlives
     /// this. False, and nothing changed, where the work is too little (avoid::is_valid).
@@ -65,7 +68,7 @@ private:
     // The supervisor's settings depend on these: they come before it.
     avoid::WorkPerUpdate work_;
     bool leaves_reach_out_ = false;
-    bool reach_sees_scans_ = false;
+    Sight* sight_ = nullptr;  ///< what reach sets see by; null: nothing of that kind
     Methods methods_;
     Methods::Supervisor supervisor_;
     NominalPaths nominal_;

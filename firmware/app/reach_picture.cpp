@@ -15,6 +15,23 @@ ReachPicture::ReachPicture(const reach::VehicleSets& sets) noexcept : sets_(sets
     static_cast<void>(picture_.configure(widest->emergency->grid));
 }
 
+const world::CostToGo& ReachPicture::way_of(const world::Situation& situation, bool plan_runs) noexcept
+{
+    if (!plan_runs) {
+        way_.show();
+    }
+    if (way_.is_idle()) {
+        way_.begin(situation);
+    }
+    return way_;
+}
+
+void ReachPicture::advance(WorkBudget& budget) noexcept
+{
+    static_assert(BackgroundService<world::CostToGoField>);
+    static_cast<void>(way_.advance(budget));
+}
+
 void ReachPicture::begin_scan(const link::CloudScan& scan) noexcept
 {
     const float speed = view_.velocity.norm();
@@ -23,7 +40,6 @@ void ReachPicture::begin_scan(const link::CloudScan& scan) noexcept
     start.stamp = scan.stamp;
     start.position = view_.position + view_.velocity * (scan.stamp - view_.stamp);
     start.nose = view_.yaw;
-    start.course = speed >= least_speed ? std::atan2(view_.velocity.y(), view_.velocity.x()) : view_.yaw;
     start.unit = std::max(speed, least_speed) * sets_.period;
     start.horizontal_pitch = scan.ray_pitch_level;
     start.vertical_pitch = scan.ray_pitch_vertical;

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "core/avoid/final_check.hpp"
 #include "core/reach/scan_picture.hpp"
@@ -337,6 +339,56 @@ TEST(ReachPlanner, DoesNotGoWhereAScanDoesNotSee)
     EXPECT_EQ(plan_now(m), PlanStatus::none_available) << "blind where it used to see";
     picture.block_unseen(false);
     EXPECT_EQ(plan_now(m), PlanStatus::found);
+}
+
+/// Somebody who says where to go.
+struct KnownWay final : world::CostToGo {
+    std::optional<Vec3> place;
+
+    [[nodiscard]] std::optional<Seconds> lost_from(const Vec3& /*from*/) const noexcept override { return {}; }
+    [[nodiscard]] std::optional<Vec3> way_around(const Vec3& /*from*/, float /*distance*/) const noexcept override
+    {
+        return place;
+    }
+};
+
+TEST(ReachPlanner, FollowsTheWayPastObstaclesFromAStand)
+{
+    Case c;
+    c.own.velocity = Vec3::Zero();
+    KnownWay way;
+    world::Situation situation = c.view();
+    situation.cost_to_go = &way;
+    const auto end_of_plan = [&] {
+        world::Manoeuvre m;
+        EXPECT_EQ(plan(situation, m), PlanStatus::found);
+        EXPECT_EQ(planner().last().headings, 1) << "the first course is that of the way";
+        return m.path.points.empty() ? Vec3(Vec3::Zero()) : Vec3(m.path.points.back().position - c.own.position);
+    };
+    EXPECT_GT(end_of_plan().x(), 1.0F) << "no way known: along the leg";
+    for (float azimuth = -3.0F; azimuth < 3.2F; azimuth += 0.4F) {
+        const Vec3 to(std::cos(azimuth), std::sin(azimuth), 0.0F);
+        way.place = c.own.position + 6.0F * to;
+        const Vec3 end = end_of_plan();
+        EXPECT_GT(end.dot(to), 0.95F * end.norm()) << azimuth;
+        EXPECT_GT(end.norm(), 1.0F) << azimuth;
+    }
+    way.place = c.own.position + Vec3(0.0F, 0.0F, 6.0F);
+    EXPECT_GT(end_of_plan().x(), 0.5F) << "straight above there is no course: along the leg";
+}
+
+TEST(ReachPlanner, InFlightTheWayPastObstaclesIsTheGoal)
+{
+    Case c;
+    KnownWay way;
+    world::Situation situation = c.view();
+    situation.cost_to_go = &way;
+    for (const float side : {-1.0F, 1.0F}) {
+        way.place = c.own.position + Vec3(20.0F, 12.0F * side, 0.0F);
+        world::Manoeuvre m;
+        ASSERT_EQ(plan(situation, m), PlanStatus::found);
+        EXPECT_GT(m.path.points.back().position.y() * side, 3.0F);
+    }
 }
 
 }  // namespace

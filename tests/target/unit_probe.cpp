@@ -164,7 +164,7 @@ void UnitProbe::scan() noexcept
     picture_.block_unseen(below(2) == 0);
     reach::ScanStart start;
     start.position = own_.position;
-    start.course = std::atan2(own_.velocity.y(), own_.velocity.x());
+    start.nose = std::atan2(own_.velocity.y(), own_.velocity.x());
     start.unit = random_.uniform(0.5F, 3.0F);
     start.horizontal_pitch = start.vertical_pitch = 0.1F;
     static_cast<void>(picture_.begin(start));

@@ -15,7 +15,7 @@
  * Versions: `size` of a structure is set by the caller, to sizeof. A library of the same JINK_ABI never changes a field
  * that is here. The library refuses sizes that it does not know.
  *
- * Memory: jink_create() allocates once, less than 1 MiB; no other function allocates.
+ * Memory: jink_create() allocates once, less than 1.5 MiB; no other function allocates.
  *
  * Threads: one thread at a time for each handle. Different handles share nothing.
  */

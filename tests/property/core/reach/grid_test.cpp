@@ -73,16 +73,20 @@ TEST(GridLaws, CentresLieInTheirCells)
     }
 }
 
-/// By tangents as by angles, but for points on a face.
+/// Without angles as by angles, but for points on a face.
 TEST(CellFinderLaw, ManyPointsLieWhereEachOfThemDoes)
 {
     Random random(13);
-    const Grid<float> grids[] = {Grid<float>(), Grid<float>(16, 16, 16, 150.0F, 1.5F, 1.5F),
-                                 Grid<float>(1, 1, 1, 2.0F, 0.1F, 0.2F), Grid<float>(7, 3, 5, 10.0F, 0.7F, 0.4F)};
+    const Grid<float> grids[] = {Grid<float>(),
+                                 Grid<float>(16, 16, 16, 150.0F, 1.5F, 1.5F),
+                                 Grid<float>(1, 1, 1, 2.0F, 0.1F, 0.2F),
+                                 Grid<float>(7, 3, 5, 10.0F, 0.7F, 0.4F),
+                                 Grid<float>(10, 28, 5, 10.0F, kPi, 0.5F),
+                                 Grid<float>(10, 32, 5, 8.0F, 2.5F, 0.5F)};
     std::size_t inside = 0;
     std::size_t points = 0;
     for (int i = 0; i < 40000; ++i) {
-        const Grid<float>& grid = grids[random.below(4)];
+        const Grid<float>& grid = grids[random.below(6)];
         const CellFinder finder(grid);
         const std::size_t n = 1 + random.below(CellFinder::kAtOnce);
         CellFinder::Coordinates x{};
@@ -122,8 +126,10 @@ TEST(CellFinderLaw, FindsTheCellThatTheGridLocates)
     std::size_t inside = 0;
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
         Random random(seed);
-        const Grid<float> grid(1 + random.below(16), 1 + random.below(16), 1 + random.below(16),
-                               random.uniform(0.5F, 200.0F), random.uniform(0.1F, 1.5F), random.uniform(0.1F, 1.5F));
+        const bool is_around = random.below(4) == 0;
+        const float horizontal = is_around ? kPi : random.uniform(0.1F, 3.1F);
+        const Grid<float> grid(1 + random.below(16), 1 + random.below(32), 1 + random.below(16),
+                               random.uniform(0.5F, 200.0F), horizontal, random.uniform(0.1F, 1.5F));
         ASSERT_TRUE(CellFinder::serves(grid));
         const CellFinder finder(grid);
         const float slack = 1e-5F * grid.distance();
@@ -155,7 +161,16 @@ TEST(CellFinderLaw, FindsTheCellThatTheGridLocates)
     EXPECT_EQ(finder.locate(Vec3(INFINITY, 0.0F, 0.0F)).status, LocateStatus::outside);
     EXPECT_EQ(finder.locate(Vec3(-1.0F, 0.0F, 0.0F)).status, LocateStatus::outside) << "behind";
     EXPECT_EQ(finder.locate(Vec3::Zero()).status, LocateStatus::inside);
-    EXPECT_FALSE(CellFinder::serves(Grid<float>(1, 1, 1, 1.0F, 1.6F, 0.5F)));
+    EXPECT_TRUE(CellFinder::serves(Grid<float>(1, 32, 1, 1.0F, kPi, 0.5F)));
+    EXPECT_FALSE(CellFinder::serves(Grid<float>(1, 33, 1, 1.0F, kPi, 0.5F)));
+    EXPECT_FALSE(CellFinder::serves(Grid<float>(1, 1, 1, 1.0F, 3.2F, 0.5F)));
+    EXPECT_FALSE(CellFinder::serves(Grid<float>(1, 1, 1, 1.0F, 0.5F, 1.6F)));
+    const CellFinder around{Grid<float>(1, 4, 1, 1.0F, kPi, 0.5F)};
+    for (const float right_or_left : {-1e-6F, -0.0F, 0.0F, 1e-6F}) {
+        const Located behind = around.locate(Vec3(-0.5F, right_or_left, 0.0F));
+        EXPECT_EQ(behind.status, LocateStatus::inside) << "behind";
+        EXPECT_EQ(behind.place.column, right_or_left < 0.0F ? 0 : 3) << right_or_left;
+    }
 }
 
 }  // namespace

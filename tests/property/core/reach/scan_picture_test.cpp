@@ -135,6 +135,31 @@ TEST(ScanPictures, WhereRaysAreMissingNothingIsSeen)
     }
 }
 
+/// A vehicle that hovers may leave in any direction: the picture is of all of them.
+TEST(ScanPictures, SeeAllAround)
+{
+    GridAlone grid;
+    ScanPicture picture;
+    ASSERT_TRUE(picture.configure(grid.set.grid));
+    ASSERT_TRUE(picture.begin(straight_ahead()));
+    look_around(picture, {}, kPi);
+    for (float course = -kPi; course < kPi; course += 0.1F) {
+        grid.placed.cosine = std::cos(course);
+        grid.placed.sine = std::sin(course);
+        ASSERT_TRUE(grid.rate(picture, true));
+        EXPECT_EQ(std::count(grid.blocks.begin(), grid.blocks.end(), kBlocked), 0) << course;
+    }
+    ASSERT_TRUE(picture.begin(straight_ahead()));
+    look_around(picture, {Vec3(-4.5F, 0.3F, 0.2F)}, kPi);
+    for (const float course : {0.0F, 1.5F, 3.0F, -3.0F}) {
+        grid.placed.cosine = std::cos(course);
+        grid.placed.sine = std::sin(course);
+        ASSERT_TRUE(grid.rate(picture, false));
+        const bool is_behind = std::abs(course) > 2.0F;
+        EXPECT_EQ(std::count(grid.blocks.begin(), grid.blocks.end(), kBlocked) > 0, is_behind) << course;
+    }
+}
+
 TEST(ScanPictures, AScanThatCannotBeUsedLeavesTheOneBefore)
 {
     GridAlone grid;
@@ -145,7 +170,7 @@ TEST(ScanPictures, AScanThatCannotBeUsedLeavesTheOneBefore)
     look_around(picture, {Vec3(4.5F, 0.0F, 0.0F)});
     for (const auto& spoil : std::vector<void (*)(ScanStart&)>{
              [](ScanStart& s) { s.unit = 0.0F; }, [](ScanStart& s) { s.position.x() = NAN; },
-             [](ScanStart& s) { s.nose = NAN; }, [](ScanStart& s) { s.course = INFINITY; },
+             [](ScanStart& s) { s.nose = NAN; }, [](ScanStart& s) { s.unit = INFINITY; },
              [](ScanStart& s) { s.horizontal_pitch = 0.0F; }, [](ScanStart& s) { s.vertical_pitch = 3.0F; }}) {
         ScanStart bad = straight_ahead();
         spoil(bad);
@@ -170,11 +195,11 @@ TEST(ScanPictureLaw, HitsStayWhereTheyAreWhenTheGridMoves)
         ScanStart start = straight_ahead(random.uniform(1.0F, 3.0F));
         start.position =
             Vec3(random.uniform(-200.0F, 200.0F), random.uniform(-200.0F, 200.0F), random.uniform(5.0F, 50.0F));
-        start.course = random.uniform(-kPi, kPi);
         start.nose = random.uniform(-kPi, kPi);
         ASSERT_TRUE(picture.begin(start));
+        const float course = random.uniform(-kPi, kPi);
         // In the world frame, then in the sensor frame.
-        const float azimuth = start.course + random.uniform(-0.7F, 0.7F);
+        const float azimuth = course + random.uniform(-0.7F, 0.7F);
         const float elevation = random.uniform(-0.45F, 0.45F);
         const Vec3 apart =
             random.uniform(1.0F, 9.5F) * start.unit *
@@ -184,7 +209,6 @@ TEST(ScanPictureLaw, HitsStayWhereTheyAreWhenTheGridMoves)
         picture.add(Vec3(c * apart.x() + s * apart.y(), -s * apart.x() + c * apart.y(), apart.z()));
         picture.end();
         grid.placed.origin = start.position + 0.3F * start.unit * Vec3(random.uniform(), random.uniform(), 0.0F);
-        const float course = start.course + random.uniform(-0.1F, 0.1F);
         grid.placed.cosine = std::cos(course);
         grid.placed.sine = std::sin(course);
         grid.placed.unit = start.unit * random.uniform(0.9F, 1.1F);

@@ -260,5 +260,71 @@ TEST(DeadEnds, AreOfTheVehicleAsItIsWhateverThePlanKept)
     EXPECT_EQ(assessed(inflated.situation, 0.0F), 6.0F) << "a vehicle that is that large does not pass";
 }
 
+/// Answers the same for every place; nothing: not known.
+struct FakeCostToGo final : world::CostToGo {
+    std::optional<Seconds> lost;
+    mutable std::vector<Vec3> asked;
+
+    [[nodiscard]] std::optional<Seconds> lost_from(const Vec3& place) const noexcept override
+    {
+        asked.push_back(place);
+        return lost;
+    }
+    [[nodiscard]] std::optional<Vec3> way_around(const Vec3&, float) const noexcept override { return std::nullopt; }
+};
+
+/// What is lost on the way from the flight's end on, where that is known, and else the straight way.
+TEST(DeadEnds, CostWhatIsLostWhereThatIsKnown)
+{
+    Flight f;
+    const auto flown = flight({{0, 0, 30}, {20, 0, 35}}, 4.0F);
+    FakeCostToGo known;
+    const auto cost_with = [&](std::uint32_t units) {
+        world::Situation s = f.scene.situation();
+        s.cost_to_go = &known;
+        known.asked.clear();
+        WorkBudget budget(units);
+        return avoid::cost_of(s, {}, flown, apart(1.0F), budget);
+    };
+    const ManoeuvreCost free = cost(f, flown, apart(1.0F));
+    f.scene.obstacle(geometry::make_box(Vec3(40, 0, 30), Vec3(1, 20, 20)));
+    for (const Seconds lost : {0.0F, 3.5F, 30.0F}) {
+        known.lost = lost;
+        const ManoeuvreCost c = cost_with(1000);
+        EXPECT_EQ(c.dead_end, lost) << "though the straight way is blocked";
+        EXPECT_NEAR(c.total(), free.total() + lost, kExact) << "all other terms stay";
+        ASSERT_EQ(known.asked.size(), 1U);
+        EXPECT_EQ(known.asked[0], Vec3(20, 0, 35)) << "from the flight's end";
+    }
+    known.lost.reset();
+    EXPECT_EQ(cost_with(1000).dead_end, 6.0F) << "not known: the straight way";
+    EXPECT_EQ(known.asked.size(), 1U);
+    f.scene.obstacles.clear();
+    EXPECT_EQ(cost_with(1000).dead_end, 0.0F);
+    known.lost = 3.5F;
+    EXPECT_EQ(cost_with(1000).dead_end, 3.5F) << "of a closed area, with no obstacle at all";
+}
+
+/// Nine work units for the terms before. One too few for the answer: it is not asked for, and an obstacle blocks.
+TEST(DeadEnds, WithoutTheWorkToAskAreBlocked)
+{
+    Flight f;
+    const auto flown = flight({{0, 0, 30}, {20, 0, 35}}, 4.0F);
+    f.scene.obstacle(geometry::make_sphere(Vec3(200, 0, 30), 1.0F));
+    FakeCostToGo known;
+    known.lost = 3.5F;
+    world::Situation s = f.scene.situation();
+    s.cost_to_go = &known;
+    WorkBudget exactly(9 + units::kLost);
+    EXPECT_EQ(avoid::cost_of(s, {}, flown, apart(1.0F), exactly).dead_end, 3.5F);
+    EXPECT_EQ(exactly.left(), 0U);
+    for (std::uint32_t units = 9; units < 9 + units::kLost; ++units) {
+        known.asked.clear();
+        WorkBudget less(units);
+        EXPECT_EQ(avoid::cost_of(s, {}, flown, apart(1.0F), less).dead_end, 6.0F) << units;
+        EXPECT_TRUE(known.asked.empty()) << units;
+    }
+}
+
 }  // namespace
 }  // namespace jink::avoid

@@ -26,11 +26,13 @@ struct Scene {
     TrackId own_id = 0;
     const Commanded* commanded = nullptr;
     Seconds shared_horizon = std::numeric_limits<Seconds>::infinity();
+    const CostToGo* cost_to_go = nullptr;
     mutable ThreatSet threats;  ///< of the newest situation
 
     [[nodiscard]] Situation situation() const
     {
-        Situation s{now, own, limits, airframe, reference, rules, {}, flying, own_id, commanded, shared_horizon};
+        Situation s{now, own,    limits, airframe,  reference,      rules,
+                    {},  flying, own_id, commanded, shared_horizon, cost_to_go};
         static_cast<void>(threats.collect(s, around()));
         s.threats = threats.all();
         return s;

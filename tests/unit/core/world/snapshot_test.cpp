@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/world/cost_to_go_field.hpp"
 #include "tests/unit/core/world/scene.hpp"
 
 namespace jink::world {
@@ -62,6 +63,8 @@ TEST(Snapshot, IsTheSituationAsItWas)
     scene.commanded = &commanded;
     scene.own_id = 7;
     scene.shared_horizon = 2.0F;
+    const CostToGoField field;
+    scene.cost_to_go = &field;
     const auto snapshot = std::make_unique<Snapshot>();
     EXPECT_FALSE(is_complete(snapshot->situation()));
     snapshot->take(scene.situation());
@@ -89,6 +92,7 @@ TEST(Snapshot, IsTheSituationAsItWas)
     EXPECT_EQ(s.own.position, Vec3(0, 0, 10));
     EXPECT_EQ(s.own_id, 7U);
     EXPECT_EQ(s.shared_horizon, 2.0F);
+    EXPECT_EQ(s.cost_to_go, &field);
     ASSERT_NE(s.flying, nullptr);
     EXPECT_EQ(s.flying->cost, 0.25F);
     ASSERT_NE(s.commanded, nullptr);
