@@ -52,6 +52,12 @@ bool is_blocked(const world::Situation& s, const Vec3& from, const Vec3& to, flo
     return world::least_separation(s, way, duration, budget, s.rules.escape, kClearOrNot).margin < 0.0F;
 }
 
+/// What obstacles cost on the way from `place`, where that is known.
+std::optional<Seconds> lost_from(const world::Situation& s, const Vec3& place, WorkBudget& budget) noexcept
+{
+    return s.cost_to_go != nullptr && budget.spend(units::kLost) ? s.cost_to_go->lost_from(place) : std::nullopt;
+}
+
 }  // namespace
 
 ManoeuvreCost cost_of(const world::Situation& s, const world::Manoeuvre& manoeuvre,
@@ -100,18 +106,15 @@ ManoeuvreCost cost_of(const world::Situation& s, const world::Manoeuvre& manoeuv
         cost.rules = kAgainstRules;
     }
     const float ahead = std::min(place.arc_length + s.rules.lookahead * speed, length);
-    world::Situation fixed = s;
-    fixed.threats = world::of_kind(s.threats, world::ThreatKind::obstacle);
-    const std::optional<Seconds> lost = s.cost_to_go != nullptr && budget.spend(units::kLost)
-                                            ? s.cost_to_go->lost_from(flight.back().position)
-                                            : std::nullopt;
-    if (lost) {
-        cost.dead_end = *lost;
-    } else if (!fixed.threats.empty() &&
+    const auto leads_into_something = [&] {
+        world::Situation fixed = s;
+        fixed.threats = world::of_kind(s.threats, world::ThreatKind::obstacle);
+        return !fixed.threats.empty() &&
                (!budget.spend(point_units) ||
-                is_blocked(fixed, flight.back().position, route.at(ahead).position, speed, budget))) {
-        cost.dead_end = kDeadEnd;
-    }
+                is_blocked(fixed, flight.back().position, route.at(ahead).position, speed, budget));
+    };
+    const std::optional<Seconds> lost = lost_from(s, flight.back().position, budget);
+    cost.dead_end = lost ? *lost : leads_into_something() ? kDeadEnd : 0.0F;
     return cost;
 }
 

@@ -71,7 +71,7 @@ private:
     static constexpr std::size_t kFindShare = 32;
 
     [[nodiscard]] Placed frame() const noexcept;
-    [[nodiscard]] bool note_ray(const Vec3& in_grid, CellPlace& place) noexcept;
+    [[nodiscard]] bool note_ray(const Vec3& ray, CellPlace& place) noexcept;
     void judge() noexcept;
     using CellBits = std::array<std::uint32_t, (LidarScan::kCells + 31) / 32>;
     [[nodiscard]] std::size_t find_near(const Placed& placed, CellBits& near) const noexcept;

@@ -30,6 +30,20 @@ std::array<int, 2> cells_between(float low, float high, float width, int count) 
     return {std::max(0, cell(std::ceil(low / width))), std::min(count - 1, cell(std::floor(high / width)))};
 }
 
+/// Cells between a cell and those that come before it in an order.
+std::array<int, kOrders> steps_back(unsigned order) noexcept
+{
+    constexpr std::array<int, 3> kApart{1, CostToGoField::kColumns, CostToGoField::kColumns * CostToGoField::kColumns};
+    std::array<int, kOrders> back{};
+    for (unsigned d = 1; d < kOrders; ++d) {
+        for (unsigned axis = 0; axis < kApart.size(); ++axis) {
+            const int apart = (order >> axis & 1U) != 0 ? -kApart[axis] : kApart[axis];
+            back[d] += (d >> axis & 1U) != 0 ? apart : 0;
+        }
+    }
+    return back;
+}
+
 }  // namespace
 
 Vec3 CostToGoField::Field::middle(const Cell& cell) const noexcept
@@ -56,7 +70,8 @@ bool CostToGoField::Field::contains(const Vec3& place) const noexcept
 
 std::size_t CostToGoField::index(const Cell& cell) noexcept
 {
-    return static_cast<std::size_t>((cell.z * kColumns + cell.y) * kColumns + cell.x);
+    const auto at = [](int i) { return static_cast<std::size_t>(i); };
+    return (at(cell.z) * kColumns + at(cell.y)) * kColumns + at(cell.x);
 }
 
 CostToGoField::Times CostToGoField::Field::times_of_steps() const noexcept
@@ -288,7 +303,10 @@ void CostToGoField::set_sources(int z) noexcept
             const bool is_side = x == 0 || y == 0 || x == kColumns - 1 || y == kColumns - 1 || is_end;
             const Seconds straight = field.straight(field.middle(cell));
             const bool is_source = !blocked_[index(cell)] && (is_within ? straight <= near : is_side);
-            field.cost[index(cell)] = is_source ? straight : kInfinite;
+            field.cost[index(cell)] = kInfinite;
+            if (is_source) {
+                field.cost[index(cell)] = straight;
+            }
         }
     }
 }
@@ -297,16 +315,9 @@ void CostToGoField::set_sources(int z) noexcept
 void CostToGoField::sweep(unsigned order, int layer) noexcept
 {
     Field& field = built();
-    const std::array<int, 3> step{(order & 1U) != 0 ? -1 : 1, (order & 2U) != 0 ? -1 : 1, (order & 4U) != 0 ? -1 : 1};
-    const auto at = [&](int axis, int i, int count) {
-        return step[static_cast<std::size_t>(axis)] > 0 ? i : count - 1 - i;
-    };
+    const auto at = [&](unsigned axis, int i, int count) { return (order >> axis & 1U) != 0 ? count - 1 - i : i; };
     const Times time = field.times_of_steps();
-    std::array<int, kOrders> back{};
-    for (unsigned d = 1; d < kOrders; ++d) {
-        back[d] = ((d & 1U) != 0 ? step[0] : 0) + ((d & 2U) != 0 ? step[1] * kColumns : 0) +
-                  ((d & 4U) != 0 ? step[2] * kColumns * kColumns : 0);
-    }
+    const std::array<int, kOrders> back = steps_back(order);
     const unsigned without_z = layer > 0 ? 0U : 4U;
     for (int j = 0; j < kColumns; ++j) {
         const unsigned without_y = without_z | (j > 0 ? 0U : 2U);
@@ -316,14 +327,12 @@ void CostToGoField::sweep(unsigned order, int layer) noexcept
             if (blocked_[cell]) {
                 continue;
             }
-            Seconds best = field.cost[cell];
+            const Seconds* const here = &field.cost[cell];
+            Seconds best = *here;
             for (unsigned d = 1; d < kOrders; ++d) {
-                if ((d & without) == 0) {
-                    best = std::min(best,
-                                    field.cost[static_cast<std::size_t>(static_cast<int>(cell) - back[d])] + time[d]);
-                }
+                best = (d & without) == 0 ? std::min(best, *(here - back[d]) + time[d]) : best;
             }
-            changed_ = changed_ || best < field.cost[cell];
+            changed_ = changed_ || best < *here;
             field.cost[cell] = best;
         }
     }

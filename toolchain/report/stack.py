@@ -31,7 +31,7 @@ INDIRECT = [
     (r"3app6CanBus", [r"5BxCanI"]),
     (r"link7mavlink8Endpoint", []),  # consumers of points: none on an image
     (r"3app10ParamFlash", [r"7stm32(f4|h7)5FlashI"]),
-    (r"5reach7Planner(4look|7try_set)", []),  # raters of cells: none on an image
+    (r"5reach7Planner(4look|7try_set|4plan)|5avoid(7cost_of|.*9lost_from)", []),  # raters of cells, ways past obstacles: none on an image
     (r"8dronecan4Node", [r"12ParamService"]),
     (r"jink_reset_handler", [r"_GLOBAL__sub_I"]),
     (r"MemorySerialLink|MemoryLine|memory", []),

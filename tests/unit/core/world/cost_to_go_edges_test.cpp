@@ -229,7 +229,7 @@ TEST(CostToGoEdges, ExtremeValuesGiveOrdinaryAnswers)
     }
 }
 
-/// As many blocks as there is room for, each over all of the grid.
+/// As many blocks as fit, each over all of the grid.
 TEST(CostToGoEdges, TakesAllObstaclesThatThereAre)
 {
     FieldScene scene;
