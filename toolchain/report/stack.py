@@ -31,7 +31,8 @@ INDIRECT = [
     (r"3app6CanBus", [r"5BxCanI"]),
     (r"link7mavlink8Endpoint", []),  # consumers of points: none on an image
     (r"3app10ParamFlash", [r"7stm32(f4|h7)5FlashI"]),
-    (r"5reach7Planner(4look|7try_set|4plan)|5avoid(7cost_of|.*9lost_from)", []),  # raters of cells, ways past obstacles: none on an image
+    # Raters of cells, ways past obstacles, sensors that look around: none on an image.
+    (r"5reach7Planner(4look|7try_set|4plan)|5avoid(7cost_of|.*9lost_from)|3app8Decision", []),
     (r"8dronecan4Node", [r"12ParamService"]),
     (r"jink_reset_handler", [r"_GLOBAL__sub_I"]),
     (r"MemorySerialLink|MemoryLine|memory", []),
