@@ -15,6 +15,8 @@ constexpr std::array<float, 2> kInside{0.25F, 0.75F};
 
 /// Of a number of columns.
 constexpr float kRounding = 1e-3F;
+/// All around; with fewer there is no picture.
+constexpr std::size_t kMinColumns = 7;
 
 /// Any hit is an obstacle, whatever its size.
 constexpr float kAnyHit = 1e-3F;
@@ -120,20 +122,25 @@ private:
 
 bool ScanPicture::configure(const Grid<float>& sets) noexcept
 {
-    known_ = counts_ = false;
-    has_grid_ = false;
+    known_ = counts_ = has_grid_ = false;
     if (sets.cells() == 0) {
         return false;
     }
-    const auto all_around = kPi / sets.horizontal() * static_cast<float>(sets.columns());
+    const std::size_t fit = std::min({CellFinder::kMaxFinderColumns, LidarScan::kDirections / sets.rows(),
+                                      LidarScan::kCells / (sets.rows() * sets.layers())});
+    if (fit < kMinColumns) {
+        return false;
+    }
+    const float wanted = std::ceil(kPi / sets.horizontal() * static_cast<float>(sets.columns()) - kRounding);
     // An odd number: one of them lies about the nose.
-    const std::size_t columns = static_cast<std::size_t>(std::ceil(all_around - kRounding)) | 1U;
-    const Grid<float> around(sets.layers(), columns, sets.rows(), sets.distance(), kPi, sets.vertical());
-    if (columns <= LidarScan::kDirections && columns * around.rows() <= LidarScan::kDirections &&
-        around.cells() <= LidarScan::kCells && CellFinder::serves(around)) {
+    const auto odd = [](std::size_t n) { return n - 1 + n % 2; };
+    const std::size_t columns = wanted < static_cast<float>(fit) ? odd(static_cast<std::size_t>(wanted) + 1) : odd(fit);
+    const Grid<float> around(sets.layers(), std::max(columns, kMinColumns), sets.rows(), sets.distance(), kPi,
+                             sets.vertical());
+    has_grid_ = CellFinder::serves(around);
+    if (has_grid_) {
         grid_ = around;
         finder_ = CellFinder(grid_);
-        has_grid_ = true;
     }
     return has_grid_;
 }

@@ -28,8 +28,9 @@ public:
     /// Least share of a direction's rays that must be fired: the number of rays varies a little between directions.
     static constexpr float kSeenShare = 0.75F;
 
-    /// Layers and rows as the sets', and columns all around that are no wider. False if that exceeds the capacity of a
-    /// LidarScan or a CellFinder; the picture then stays without a scan.
+    /// Layers and rows as the sets', and columns all around that are no wider, or as many as a LidarScan and a
+    /// CellFinder have space for: coarser cells block more. False if that is not even seven; the picture then stays
+    /// without a scan.
     [[nodiscard]] bool configure(const Grid<float>& sets) noexcept;
 
     /// Begins a new scan; a previous scan without its end is discarded. False if the scan cannot be used: no grid,

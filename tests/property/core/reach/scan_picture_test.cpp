@@ -160,6 +160,36 @@ TEST(ScanPictures, SeeAllAround)
     }
 }
 
+/// Sets of a vehicle that turns slowly have narrow columns: a picture with coarser ones is better than none, with which
+/// nothing that is not seen would be blocked.
+TEST(ScanPictures, OfNarrowOrManyCellsAreCoarserAndNotMissing)
+{
+    for (const Grid<float>& sets :
+         {Grid<float>(10, 7, 5, 10.0F, 0.293F, 0.196F), Grid<float>(10, 16, 5, 10.0F, 0.1F, 0.5F),
+          Grid<float>(10, 3, 10, 10.0F, 0.5F, 0.5F), Grid<float>(16, 3, 8, 10.0F, 0.3F, 0.5F)}) {
+        SCOPED_TRACE(sets.columns());
+        GridAlone grid;
+        grid.set.grid = sets;
+        grid.blocks.assign(sets.cells(), kFree);
+        ScanPicture picture;
+        ASSERT_TRUE(picture.configure(sets));
+        ASSERT_TRUE(picture.begin(straight_ahead()));
+        look_around(picture, {}, kPi);
+        for (const float course : {0.0F, 1.0F, 3.0F, -2.0F}) {
+            grid.placed.cosine = std::cos(course);
+            grid.placed.sine = std::sin(course);
+            ASSERT_TRUE(grid.rate(picture, true));
+            EXPECT_EQ(std::count(grid.blocks.begin(), grid.blocks.end(), kBlocked), 0) << course;
+        }
+        ASSERT_TRUE(picture.begin(straight_ahead()));
+        look_around(picture, {}, 0.5F);
+        grid.placed.cosine = -1.0F;
+        grid.placed.sine = 0.0F;
+        ASSERT_TRUE(grid.rate(picture, true));
+        EXPECT_EQ(std::count(grid.blocks.begin(), grid.blocks.end(), kFree), 0) << "nobody has looked behind";
+    }
+}
+
 TEST(ScanPictures, AScanThatCannotBeUsedLeavesTheOneBefore)
 {
     GridAlone grid;
