@@ -165,9 +165,10 @@ TEST(ScanPictures, SeeAllAround)
 TEST(ScanPictures, OfNarrowOrManyCellsAreCoarserAndNotMissing)
 {
     for (const Grid<float>& sets :
-         {Grid<float>(10, 7, 5, 10.0F, 0.293F, 0.196F), Grid<float>(10, 16, 5, 10.0F, 0.1F, 0.5F),
+         {Grid<float>(10, 7, 5, 10.0F, 0.293F, 0.196F), Grid<float>(10, 12, 5, 10.0F, 0.1F, 0.5F),
           Grid<float>(10, 3, 10, 10.0F, 0.5F, 0.5F), Grid<float>(16, 3, 8, 10.0F, 0.3F, 0.5F)}) {
         SCOPED_TRACE(sets.columns());
+        ASSERT_TRUE(CellSpheres::serves(sets)) << "no vehicle flies with it";
         GridAlone grid;
         grid.set.grid = sets;
         grid.blocks.assign(sets.cells(), kFree);
