@@ -171,7 +171,7 @@ TakeoverInput AutopilotControl::takeover_input(const ControlInput& input, const 
     out.earlier = input.autopilot.earlier();
     out.mode_denied = input.autopilot.has_denied_mode();
     out.mode_accepted = input.autopilot.has_accepted_mode();
-    out.keep_stream = c.standby_stream;
+    out.stands_by = c.stands_by;
     out.link_alive = (report.faults & bit(Fault::port_lost)) == 0;
     out.sticks_moved = sticks_moved_;
     if (takeover_.control() == Control::ours) {

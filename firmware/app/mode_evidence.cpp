@@ -35,18 +35,17 @@ bool ModeEvidence::is_clear_to_ask(TimePoint now) noexcept
         waits_since_ = now;
     }
     const bool answered = now - heard_ <= kFresh;
-    return is_newer_than_requests() && (answered || (now - waits_since_ >= kAnswer && is_fresh(now)));
+    const bool is_unanswered = now - std::max(waits_since_, heard_) >= kAnswer;
+    return is_newer_than_requests() && (answered || (is_unanswered && is_fresh(now)));
 }
 
-bool ModeEvidence::is_due(bool watched, bool unconfirmed, TimePoint now) noexcept
+bool ModeEvidence::is_due(bool kept_fresh, TimePoint now) noexcept
 {
     const bool stale = !is_newer_than_requests() || now - heard_ >= 0.5F * kFresh;
-    const bool wanted = (needed_ || unconfirmed) && stale;
-    const bool old = watched && (!has_heard_ || now - heard_ >= kWatch);
-    const Seconds pause = wanted ? kPoll : kWatch;
+    const bool wanted = (needed_ || kept_fresh) && stale;
     waits_ = waits_ && needed_;
     needed_ = false;
-    if ((!wanted && !old) || (has_polled_ && now - polled_ < pause)) {
+    if (!wanted || (has_polled_ && now - polled_ < kPoll)) {
         return false;
     }
     has_polled_ = true;

@@ -48,10 +48,9 @@ public:
 
     /// At the end of a tick: whether to ask for a HEARTBEAT.
     ///
-    /// @param watched     in control: asked for from an age of kWatch on
-    /// @param unconfirmed a request was made, and its effect is to be seen soon: asked for, as for a mode that has to
-    ///                    be known, from an age of half kFresh on
-    [[nodiscard]] bool is_due(bool watched, bool unconfirmed, TimePoint now) noexcept;
+    /// @param kept_fresh one may be due at any time, or the effect of one is to be seen soon: asked for from an age of
+    ///                   half kFresh on, as for a mode that has to be known
+    [[nodiscard]] bool is_due(bool kept_fresh, TimePoint now) noexcept;
 
     /// A HEARTBEAT this young is evidence by itself [s]: about what a line and a pilot's hand take.
     static constexpr Seconds kFresh = 0.1F;
@@ -59,7 +58,6 @@ public:
     static constexpr Seconds kAnswer = 0.25F;
     /// Asked again after this long while a request waits [s].
     static constexpr Seconds kPoll = 0.1F;
-    static constexpr Seconds kWatch = 0.4F;
     /// Both autopilots send one a second or more; longer gaps are losses [s].
     static constexpr Seconds kLongestPeriod = 1.0F;
     static constexpr Seconds kShortestPeriod = 0.2F;

@@ -64,7 +64,7 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     {"GEO_T_LOW", 1.2530F, 0, 1000, false, "flight time that costs 0 [s]"},
     {"GEO_T_HIGH", 7.0814F, 0.01F, 1000, false, "flight time that costs 1 (before the source's factor 1.15) [s]"},
     {"GEO_LATENCY", 0.1F, 0, 1, false, "from planning until the vehicle answers: plan, link and autopilot [s]"},
-    {"JNK_STANDBY", 0, 0, 1, true, "1: slow stream of set-points to a PX4 on a mission, before they are needed"},
+    {"JNK_STANDBY", 1, 0, 1, true, "1: on a mission, what a take-over needs is kept ready: HEARTBEATs, PX4's stream"},
     {"JNK_ASK_RATES", 1, 0, 1, true, "1: ask the autopilot for messages that come too seldom"},
     {"JNK_TELL_NEAR", 0, 0, 1, true, "1: tell the CAN bus what is near (Proximity)"},
     {"JNK_METHODS", kBuiltMethods, 1, kAllMethods, true,
@@ -134,7 +134,7 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     c.own_age = at(Param::own_age);
     c.heartbeat_age = at(Param::heartbeat_age);
     c.setpoint_period = 1.0F / at(Param::rate);
-    c.standby_stream = whole(Param::standby) == 1;
+    c.stands_by = whole(Param::standby) == 1;
     c.ask_rates = whole(Param::ask_rates) == 1;
     c.tell_near = whole(Param::tell_near) == 1;
     c.sticks = 0.01F * at(Param::sticks);

@@ -140,7 +140,7 @@ struct Configuration {
     Seconds scan_keep = 1.0F;
     Seconds own_age = 0.5F, heartbeat_age = 4.5F;  ///< older is a fault [s]
     Seconds setpoint_period = 0.05F;
-    bool standby_stream = false;
+    bool stands_by = false;
     bool ask_rates = true;
     bool tell_near = false;
     float sticks = 0.3F;  ///< moved by so much they end a take-over [of half their travel]; 0: never

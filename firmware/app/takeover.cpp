@@ -70,6 +70,7 @@ void Takeover::expire_claim(const TakeoverInput& input, TimePoint now) noexcept
 {
     if (input.has_report && mode_ != FlightMode::external && (claim_.is_seen || now - request_.asked >= kConfirm)) {
         claim_.kind = Claim::none;
+        back_.due = false;
     }
 }
 
@@ -84,6 +85,13 @@ TakeoverOutput Takeover::take(TimePoint now) noexcept
     request_.tries = 0;
     hold_.due = false;
     return {TakeoverAction::none, TakeoverEvent::took_over};
+}
+
+/// May be taken over, as far as the autopilot is concerned and we are healthy.
+bool Takeover::is_free(const TakeoverInput& input) const noexcept
+{
+    return input.may_act && mode_ == FlightMode::mission && input.report.armed && !input.report.landed &&
+           input.report.steerable && !unfollowed_;
 }
 
 TakeoverOutput Takeover::idle(const TakeoverInput& input, TimePoint now) noexcept
@@ -107,9 +115,7 @@ TakeoverOutput Takeover::idle(const TakeoverInput& input, TimePoint now) noexcep
     if (const TakeoverAction hold = insist_on_hold(input, now); hold != TakeoverAction::none) {
         return {hold, TakeoverEvent::none};
     }
-    const bool free = mode_ == FlightMode::mission && input.report.armed && !input.report.landed &&
-                      input.report.steerable && !unfollowed_;
-    if (!input.wants_control || !input.may_act || !free) {
+    if (!input.wants_control || !is_free(input)) {
         return {};
     }
     static_cast<void>(evidence_.is_clear_to_ask(now));  // the answer is there when the request is due
@@ -117,7 +123,9 @@ TakeoverOutput Takeover::idle(const TakeoverInput& input, TimePoint now) noexcep
         control_ = Control::announcing;
         former_mode_ = input.report.custom_mode;
         since_ = now;
+        stream_.since = stream_.is_proving ? stream_.since : now;
         hold_.tries = 0;
+        return input.stands_by ? ask(input, now) : TakeoverOutput{};
     }
     return {};
 }
@@ -143,14 +151,18 @@ TakeoverOutput Takeover::ask(const TakeoverInput& input, TimePoint now) noexcept
     const Seconds waited = now - since_;
     // Asked for just before a fault that is over: its answer may be on the way.
     const bool is_open = claim_.kind == Claim::asked && now - request_.asked < kConfirm;
-    if (control_ == Control::announcing && (now - stream_.since < kAnnounce || is_open)) {
+    const link::AutopilotStack stack = input.report.stack;
+    const bool wants_none = input.stands_by && stack == link::AutopilotStack::ardupilot;
+    if (control_ == Control::announcing && ((!wants_none && now - stream_.since < kAnnounce) || is_open)) {
         static_cast<void>(evidence_.is_clear_to_ask(now));
         return {};
     }
-    request_.denied = control_ == Control::requesting && (request_.denied || input.mode_denied);
+    // The newest answer counts: an earlier one may be that to a request before.
+    request_.denied =
+        control_ == Control::requesting && !input.mode_accepted && (request_.denied || input.mode_denied);
     request_.granted = !request_.denied && (request_.granted || input.mode_accepted);
-    const bool unproven = input.report.stack == link::AutopilotStack::px4 && now - stream_.since < kProof;
-    const bool again = request_.denied && waited >= (unproven ? kAskAgain : kAnnounce);
+    const bool unproven = stack == link::AutopilotStack::px4 && now - stream_.since < kProof;
+    const bool again = request_.denied && waited >= (unproven ? kAskAgain : kRetry);
     if (control_ == Control::requesting && waited < kConfirm && !again) {
         return {};
     }
@@ -229,7 +241,11 @@ TakeoverEvent Takeover::heed_earlier(const TakeoverInput& input, TimePoint now) 
     for (const link::AutopilotReport& report : input.earlier) {
         earlier.report = report;
         if (!foreign(earlier) && report.mode == mode_) {
-            continue;  // no news
+            // The same mode, but later: what was asked for long ago has not come.
+            if (control_ != Control::requesting) {
+                expire_claim(earlier, now);
+            }
+            continue;
         }
         note_report(earlier, now);
         evidence_.discard();
@@ -255,15 +271,13 @@ TakeoverOutput Takeover::update(const TakeoverInput& input, TimePoint now) noexc
         const bool lone = input.report.armed && mode_ == FlightMode::external && claim_.kind == Claim::none;
         output.event = lone && output.event == TakeoverEvent::none ? TakeoverEvent::found : output.event;
     }
-    stream_.is_proving = control_ == Control::autopilot && claim_.kind == Claim::none && input.keep_stream &&
-                         input.may_act && input.report.stack == link::AutopilotStack::px4 &&
-                         mode_ == FlightMode::mission && input.report.armed && !input.report.landed &&
-                         input.report.steerable && !unfollowed_;
+    const bool guards =
+        input.stands_by && control_ == Control::autopilot && claim_.kind == Claim::none && is_free(input);
+    stream_.is_proving = guards && input.report.stack == link::AutopilotStack::px4;
     if (!was_streaming && (streaming() || stream_.is_proving)) {
         stream_.since = now;
     }
-    const bool unconfirmed = control_ == Control::requesting || control_ == Control::returning;
-    output.ask_heartbeat = evidence_.is_due(in_control(), unconfirmed, now);
+    output.ask_heartbeat = evidence_.is_due(guards || control_ == Control::requesting || in_control(), now);
     diagnostics_.heartbeats_asked += output.ask_heartbeat ? 1U : 0U;
     return output;
 }

@@ -67,7 +67,7 @@ struct TakeoverInput {
     bool mode_denied = false;    ///< a COMMAND_ACK refused the mode
     bool mode_accepted = false;  ///< a COMMAND_ACK accepted the mode
     bool link_alive = true;      ///< what is asked for can leave
-    bool keep_stream = false;    ///< prove the stream to a PX4 before it is needed
+    bool stands_by = false;      ///< what a take-over needs is kept ready before it is wanted
     bool sticks_moved = false;   ///< by the pilot, since streaming() began
     bool unfollowed = false;     ///< the vehicle's motion shows that it does not follow what we command
 };
@@ -99,8 +99,12 @@ struct TakeoverDiagnostics {
 ///
 /// PX4 documents (up to v1.16) that it grants OFFBOARD only after more than a second of set-points; its sources since
 /// v1.14 ask for recent ones alone. So it is asked early, and while it refuses and the stream is younger than that,
-/// asked again without counting tries. A second may be all there is: with `keep_stream` a slow stream runs beforehand,
-/// which PX4 takes note of and does not fly outside OFFBOARD (its MavlinkReceiver).
+/// asked again without counting tries.
+///
+/// What decides a late conflict is the time to the request. With `stands_by` it is made in the tick in which control is
+/// wanted: in flight on a mission HEARTBEATs are asked for so often that the newest is always evidence, and a slow
+/// stream runs to a PX4, which takes note of it and does not fly it outside OFFBOARD (its MavlinkReceiver). ArduPilot
+/// asks for no stream.
 ///
 /// A loss of control asks for the hold mode, again and again (kHoldTries) until a HEARTBEAT shows any other mode than
 /// the external one: the hold, or somebody else's choice.
@@ -159,8 +163,9 @@ public:
     }
     [[nodiscard]] const TakeoverDiagnostics& diagnostics() const noexcept { return diagnostics_; }
 
-    /// Stream this long before the request; autopilots refuse a mode whose set-points they have not seen [s].
-    static constexpr Seconds kAnnounce = 0.06F;
+    /// Stream this long before the request [s]: PX4's commander, which runs 100 times a second, refuses OFFBOARD, with a
+    /// text to the pilot, where it reads the first set-point and the request in one pass.
+    static constexpr Seconds kAnnounce = 0.015F;
     /// Wait this long for a confirmation [s].
     static constexpr Seconds kConfirm = 1.0F;
     static constexpr int kTries = 3;
@@ -168,6 +173,8 @@ public:
     static constexpr Seconds kProof = 1.3F;
     /// And is asked again this long after it did [s].
     static constexpr Seconds kAskAgain = 0.2F;
+    /// Any other refusal is answered after this [s].
+    static constexpr Seconds kRetry = 0.06F;
     /// The hold mode is asked for again after this long without an answer, after kConfirm where it was accepted [s].
     static constexpr Seconds kHoldRepeat = 0.5F;
     static constexpr int kHoldTries = 5;
@@ -187,9 +194,11 @@ private:
     [[nodiscard]] TakeoverOutput give_up(const TakeoverInput& input, TimePoint now) noexcept;
     [[nodiscard]] TakeoverOutput lose(const TakeoverInput& input, TimePoint now) noexcept;
     [[nodiscard]] bool foreign(const TakeoverInput& input) const noexcept;
+    [[nodiscard]] bool is_free(const TakeoverInput& input) const noexcept;
     [[nodiscard]] TakeoverOutput overrule() noexcept;
     [[nodiscard]] TakeoverOutput take(TimePoint now) noexcept;
     void expire_claim(const TakeoverInput& input, TimePoint now) noexcept;
+    [[nodiscard]] TakeoverAction begin_hold(const TakeoverInput& input, TimePoint now) noexcept;
     [[nodiscard]] TakeoverAction insist_on_hold(const TakeoverInput& input, TimePoint now) noexcept;
     [[nodiscard]] bool hold_is_ours(TimePoint now) const noexcept;
 

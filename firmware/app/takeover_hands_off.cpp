@@ -22,9 +22,7 @@ TakeoverAction Takeover::insist_on_hold(const TakeoverInput& input, TimePoint no
     if (hold_.tries > 0 && !unanswered && !unheeded) {
         return TakeoverAction::none;
     }
-    // A hold must not wait for an answer, but it must not be asked for on old evidence either.
-    if (!evidence_.is_newer_than_requests() || !evidence_.is_fresh(now)) {
-        evidence_.need_heartbeat();
+    if (!evidence_.is_clear_to_ask(now)) {
         return TakeoverAction::none;
     }
     ++hold_.tries;
@@ -32,6 +30,15 @@ TakeoverAction Takeover::insist_on_hold(const TakeoverInput& input, TimePoint no
     hold_.accepted = false;
     hold_.asked = now;
     return TakeoverAction::request_hold;
+}
+
+/// Control was lost.
+TakeoverAction Takeover::begin_hold(const TakeoverInput& input, TimePoint now) noexcept
+{
+    hold_.due = true;
+    hold_.accepted = false;
+    hold_.tries = 0;
+    return insist_on_hold(input, now);
 }
 
 /// A hold seen now answers what was asked for at a loss.
@@ -123,11 +130,8 @@ TakeoverOutput Takeover::give_up(const TakeoverInput& input, TimePoint now) noex
     control_ = Control::refused;
     unfollowed_ = true;
     request_.tries = kTries;
-    hold_.due = true;
-    hold_.accepted = false;
-    hold_.tries = 0;
     ++diagnostics_.unfollowed;
-    return {insist_on_hold(input, now), TakeoverEvent::unfollowed};
+    return {begin_hold(input, now), TakeoverEvent::unfollowed};
 }
 
 /// A fault of ours while streaming.
@@ -136,10 +140,7 @@ TakeoverOutput Takeover::lose(const TakeoverInput& input, TimePoint now) noexcep
     const bool flown = in_control();
     drop(true);
     if (flown) {
-        hold_.due = true;
-        hold_.accepted = false;
-        hold_.tries = 0;
-        return {insist_on_hold(input, now), TakeoverEvent::lost};
+        return {begin_hold(input, now), TakeoverEvent::lost};
     }
     // Control was never given, nothing is lost: fall silent; this tick's report still counts.
     mode_ = input.has_report ? input.report.mode : FlightMode::unknown;

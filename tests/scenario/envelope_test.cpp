@@ -130,11 +130,13 @@ TEST(Phases, AHouseAcrossAStreetIsPassed)
 }
 
 /// A co-processor delayed beyond the age limit of the own state gives up control and reports this: the autopilot is
-/// requested to hold, and holds until the mission is resumed (docs/guides/take_over.md).
+/// requested to hold, and holds until the mission is resumed (docs/guides/take_over.md). Where control was granted while
+/// it was delayed, it never saw that: the hold is then somebody else's mode.
 TEST(Phases, HeldUpBeyondTheAgeOfOwnStateItDropsControlAndHolds)
 {
     const Scenario wall = scenario("scan_wall");
     unsigned dropped = 0;
+    unsigned unseen = 0;
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
         Timing timing;
         timing.seed = seed;
@@ -143,15 +145,18 @@ TEST(Phases, HeldUpBeyondTheAgeOfOwnStateItDropsControlAndHolds)
         timing.held_up_most = 800'000;
         const Record record = fly_in_process(wall, timing);
         if (record.final_mode == Mode::hold) {
-            ++dropped;
-            const auto& texts = record.heard.texts;
-            EXPECT_TRUE(std::any_of(texts.begin(), texts.end(), [](const Text& t) {
-                return t.text == "jink: fault while avoiding, control dropped";
-            }));
+            const auto says = [&](const char* what) {
+                const auto& texts = record.heard.texts;
+                return std::any_of(texts.begin(), texts.end(), [&](const Text& t) { return t.text == what; });
+            };
+            const bool drops = says("jink: fault while avoiding, control dropped");
+            dropped += drops ? 1U : 0U;
+            unseen += drops ? 0U : 1U;
+            EXPECT_TRUE(drops || says("jink: mode changed by others, hands off")) << seed;
             EXPECT_GE(record.closest.surface, wall.promise);
         }
     }
-    EXPECT_GT(dropped, 0U);
+    EXPECT_GT(dropped, unseen);
 }
 
 TEST(Ticks, AreNominalWhereNothingIsVaried)

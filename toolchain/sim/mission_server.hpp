@@ -32,7 +32,9 @@ public:
     /// After a restart the server has no partner.
     void restart();
 
-    /// CRITICAL texts to the pilot that the co-processor caused.
+    /// Sends and keeps a text of severity CRITICAL to the pilot.
+    void complain(const char* text);
+    /// Those that the co-processor caused.
     [[nodiscard]] const std::vector<std::string>& critical() const noexcept { return critical_; }
 
 private:
@@ -42,7 +44,6 @@ private:
     void end(link::mavlink::Header from);
     void refuse(link::mavlink::Header to, std::uint8_t result);
     void send(link::mavlink::MissionItemInt item, link::mavlink::Header to);
-    void complain(const char* text);
     [[nodiscard]] bool is_partner(link::mavlink::Header from) const noexcept;
 
     Stack stack_;

@@ -202,6 +202,7 @@ struct Witness {
     int external_at = kNever;
     int accepted_at = kNever;
     int given_back_at = kNever;
+    int held_at = kNever;  ///< the hold that was asked for came
     TakeoverAction last_action = TakeoverAction::none;
     bool effect_seen = false;       ///< another mode since the last request
     std::uint32_t number_then = 0;  ///< shown when it was made
@@ -210,7 +211,8 @@ struct Witness {
     bool seen_external = false;
     bool hands_off = false;
     bool sticks = false;
-    bool was_announcing = false;
+    bool was_begun = false;     ///< a take-over
+    bool may_ask_anew = false;  ///< in the next conflict, or after the next take-over
 
     void hear(const Beat& beat, int tick, Control control)
     {
@@ -226,8 +228,9 @@ struct Witness {
             claim = seen_external = false;
         }
         given_back_at = beat.number == left && seen_before ? tick : given_back_at;
+        held_at = beat.number == kHold && last_action == TakeoverAction::request_hold ? tick : held_at;
         const bool engaged =
-            given_back_at != tick && (control == Control::announcing || control == Control::requesting ||
+            given_back_at != tick && held_at != tick && (control == Control::announcing || control == Control::requesting ||
                                       control == Control::ours || control == Control::returning);
         hands_off = hands_off || (engaged && !ours && beat.number != kHold);
     }
@@ -236,11 +239,15 @@ struct Witness {
     {
         hands_off = hands_off && wants;
         sticks = sticks && wants;
-        const bool announces = takeover.control() == Control::announcing;
-        if (announces && !was_announcing && is_mission(newest.number)) {
+        const Control control = takeover.control();
+        const bool begun =
+            control == Control::announcing || control == Control::requesting || control == Control::refused;
+        if (begun && !was_begun && is_mission(newest.number)) {
             left = newest.number;
         }
-        was_announcing = announces;
+        was_begun = begun;
+        may_ask_anew = may_ask_anew || out.event == TakeoverEvent::took_over ||
+                       (!wants && last_action == TakeoverAction::request_external);
         const bool fit = newest.armed && (newest.number == kExternal || is_mission(newest.number));
         if (takeover.streaming() && (beat_at == kNever || !fit)) {
             return "streams although the newest HEARTBEAT shows somebody else's mode";
@@ -262,11 +269,11 @@ struct Witness {
         if (tick - beat_at > allowed) {
             return "asks for a mode on an old HEARTBEAT";
         }
-        if (accepted_at > request_at && !effect_seen && out.action == last_action &&
+        if (accepted_at > request_at && !effect_seen && !may_ask_anew && out.action == last_action &&
             (beat_at < accepted_at || tick - request_at < kSecond / 2)) {
             return "repeats a request that was accepted";
         }
-        effect_seen = false;
+        effect_seen = may_ask_anew = false;
         last_action = out.action;
         number_then = newest.number;
         return check_action(out.action, takeover, tick);

@@ -142,7 +142,7 @@ TEST(ModeEvidenceEdges, WithoutAnAnswerAnOlderOneIsGoodEnoughAfterTheWait)
     const Seconds began = 3.5F;
     for (int i = 0; i < 12; ++i) {
         EXPECT_FALSE(evidence.is_clear_to_ask(moment(began + 0.02F * static_cast<float>(i))));
-        static_cast<void>(evidence.is_due(false, false, moment(began + 0.02F * static_cast<float>(i))));
+        static_cast<void>(evidence.is_due(false, moment(began + 0.02F * static_cast<float>(i))));
     }
     EXPECT_FALSE(evidence.is_clear_to_ask(moment(began + ModeEvidence::kAnswer, -1)));
     EXPECT_TRUE(evidence.is_clear_to_ask(moment(began + ModeEvidence::kAnswer)));
@@ -153,8 +153,8 @@ TEST(ModeEvidenceEdges, WaitBeginsAnewAfterATickInWhichNothingWasWanted)
 {
     ModeEvidence evidence = heard_in_gaps({1.0F, 1.0F, 1.0F});
     EXPECT_FALSE(evidence.is_clear_to_ask(moment(3.5F)));
-    static_cast<void>(evidence.is_due(false, false, moment(3.5F)));
-    static_cast<void>(evidence.is_due(false, false, moment(3.6F)));
+    static_cast<void>(evidence.is_due(false, moment(3.5F)));
+    static_cast<void>(evidence.is_due(false, moment(3.6F)));
     EXPECT_FALSE(evidence.is_clear_to_ask(moment(3.8F))) << "the request of before was given up";
     EXPECT_TRUE(evidence.is_clear_to_ask(moment(4.05F)));
 }
@@ -168,64 +168,67 @@ TEST(ModeEvidenceEdges, WaitBeginsAnewAfterARequest)
     EXPECT_FALSE(evidence.is_clear_to_ask(moment(3.8F))) << "the wait of the next request";
 }
 
-TEST(ModeEvidenceEdges, OnlyWhatIsNeededUnconfirmedOrWatchedIsAskedFor)
+TEST(ModeEvidenceEdges, OnlyWhatIsNeededOrKeptFreshIsAskedFor)
 {
-    const auto due = [](bool needed, bool watched, bool unconfirmed, Seconds age) {
+    const auto due = [](bool needed, bool kept_fresh, Seconds age) {
         ModeEvidence evidence = heard_in_gaps({1.0F});
         if (needed) {
             evidence.need_heartbeat();
         }
-        return evidence.is_due(watched, unconfirmed, moment(1.0F + age));
+        return evidence.is_due(kept_fresh, moment(1.0F + age));
     };
-    EXPECT_FALSE(due(false, false, false, 5.0F));
+    EXPECT_FALSE(due(false, false, 5.0F));
     for (const bool needed : {false, true}) {
-        EXPECT_TRUE(due(needed, false, !needed, 0.05F)) << "half of kFresh";
-        EXPECT_FALSE(due(needed, false, !needed, 0.049F)) << "young enough";
+        EXPECT_TRUE(due(needed, !needed, 0.05F)) << "half of kFresh";
+        EXPECT_FALSE(due(needed, !needed, 0.049F)) << "young enough";
     }
-    EXPECT_TRUE(due(false, true, false, ModeEvidence::kWatch));
-    EXPECT_FALSE(due(false, true, false, ModeEvidence::kWatch - 0.001F));
-    ModeEvidence never;
-    EXPECT_TRUE(never.is_due(true, false, moment(0.0F)));
-    EXPECT_TRUE(ModeEvidence().is_due(true, false, TimePoint{1000})) << "wherever the clock begins";
-    EXPECT_FALSE(ModeEvidence().is_due(false, false, moment(0.0F)));
+    EXPECT_TRUE(ModeEvidence().is_due(true, moment(0.0F)));
+    EXPECT_TRUE(ModeEvidence().is_due(true, TimePoint{1000})) << "wherever the clock begins";
+    EXPECT_FALSE(ModeEvidence().is_due(false, moment(0.0F)));
 }
 
 TEST(ModeEvidenceEdges, HeartbeatThatIsNotNewerThanTheRequestIsAskedForHoweverYoung)
 {
     ModeEvidence evidence = heard_in_gaps({1.0F});
     evidence.note_request(moment(1.01F));
-    EXPECT_TRUE(evidence.is_due(false, true, moment(1.02F)));
+    EXPECT_TRUE(evidence.is_due(true, moment(1.02F)));
 }
 
 TEST(ModeEvidenceEdges, NeedLastsOneTick)
 {
     ModeEvidence evidence = heard_in_gaps({1.0F});
     evidence.need_heartbeat();
-    EXPECT_TRUE(evidence.is_due(false, false, moment(2.0F)));
-    EXPECT_FALSE(evidence.is_due(false, false, moment(2.5F)));
+    EXPECT_TRUE(evidence.is_due(false, moment(2.0F)));
+    EXPECT_FALSE(evidence.is_due(false, moment(2.5F)));
     evidence.need_heartbeat();
     evidence.note_request(moment(2.6F));
-    EXPECT_FALSE(evidence.is_due(false, false, moment(2.7F))) << "it was asked for a mode in that tick";
+    EXPECT_FALSE(evidence.is_due(false, moment(2.7F))) << "it was asked for a mode in that tick";
 }
 
-TEST(ModeEvidenceEdges, AskedAgainAfterThePauseOfTheReason)
+TEST(ModeEvidenceEdges, AskedAgainAfterThePause)
 {
-    ModeEvidence polled = heard_in_gaps({1.0F});
-    EXPECT_TRUE(polled.is_due(false, true, moment(2.0F)));
-    EXPECT_FALSE(polled.is_due(false, true, moment(2.0F + ModeEvidence::kPoll, -1)));
-    EXPECT_TRUE(polled.is_due(false, true, moment(2.0F + ModeEvidence::kPoll)));
-    ModeEvidence watched = heard_in_gaps({1.0F});
-    EXPECT_TRUE(watched.is_due(true, false, moment(2.0F)));
-    EXPECT_FALSE(watched.is_due(true, false, moment(2.0F + ModeEvidence::kWatch, -1)));
-    EXPECT_TRUE(watched.is_due(true, false, moment(2.0F + ModeEvidence::kWatch)));
-    EXPECT_TRUE(watched.is_due(true, true, moment(2.0F + ModeEvidence::kWatch + ModeEvidence::kPoll)));
+    ModeEvidence evidence = heard_in_gaps({1.0F});
+    EXPECT_TRUE(evidence.is_due(true, moment(2.0F)));
+    EXPECT_FALSE(evidence.is_due(true, moment(2.0F + ModeEvidence::kPoll, -1)));
+    EXPECT_TRUE(evidence.is_due(true, moment(2.0F + ModeEvidence::kPoll)));
+}
+
+/// HEARTBEATs that were asked for come, but old: the wait is for one that does not come.
+TEST(ModeEvidenceEdges, AnAnswerThatIsUnderWayIsWaitedFor)
+{
+    ModeEvidence evidence = heard_in_gaps({1.0F, 1.0F, 1.0F});
+    EXPECT_FALSE(evidence.is_clear_to_ask(moment(3.5F)));
+    evidence.note_heartbeat(moment(3.7F));
+    EXPECT_FALSE(evidence.is_clear_to_ask(moment(3.82F))) << "0.32 s after the wait began";
+    EXPECT_FALSE(evidence.is_clear_to_ask(moment(3.7F + ModeEvidence::kAnswer, -1)));
+    EXPECT_TRUE(evidence.is_clear_to_ask(moment(3.7F + ModeEvidence::kAnswer)));
 }
 
 TEST(ModeEvidenceEdges, NeedOfAHeartbeatAloneIsNoWaitForItsAnswer)
 {
     ModeEvidence evidence = heard_in_gaps({1.0F, 1.0F, 1.0F});
     evidence.need_heartbeat();
-    static_cast<void>(evidence.is_due(false, false, moment(3.48F)));
+    static_cast<void>(evidence.is_due(false, moment(3.48F)));
     EXPECT_FALSE(evidence.is_clear_to_ask(moment(3.5F))) << "the wait begins with the request";
 }
 

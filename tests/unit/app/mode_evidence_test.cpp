@@ -41,7 +41,7 @@ struct Polls {
     float shortest = 1e9F;
 };
 
-Polls polls_without_an_answer(bool waits, bool watched, bool unconfirmed)
+Polls polls_without_an_answer(bool waits, bool kept_fresh)
 {
     ModeEvidence evidence = heard_once_a_second();
     Polls polls;
@@ -51,7 +51,7 @@ Polls polls_without_an_answer(bool waits, bool watched, bool unconfirmed)
         if (waits) {
             evidence.need_heartbeat();
         }
-        if (evidence.is_due(watched, unconfirmed, now)) {
+        if (evidence.is_due(kept_fresh, now)) {
             polls.shortest = polls.count > 0 ? std::min(polls.shortest, now - last) : polls.shortest;
             ++polls.count;
             last = now;
@@ -63,25 +63,21 @@ Polls polls_without_an_answer(bool waits, bool watched, bool unconfirmed)
 TEST(ModeEvidence, UnansweredPollIsRepeatedAfterThePauseAndNotBefore)
 {
     for (const bool waits : {true, false}) {
-        const Polls polls = polls_without_an_answer(waits, false, !waits);
+        const Polls polls = polls_without_an_answer(waits, !waits);
         EXPECT_GE(polls.count, 16) << "every kPoll, in whole ticks";
         EXPECT_LE(polls.count, 20);
         EXPECT_GE(polls.shortest, ModeEvidence::kPoll - 1e-4F);
     }
-    const Polls watching = polls_without_an_answer(false, true, false);
-    EXPECT_GE(watching.count, 4) << "every kWatch, in whole ticks";
-    EXPECT_LE(watching.count, 5);
-    EXPECT_GE(watching.shortest, ModeEvidence::kWatch - 1e-4F);
-    EXPECT_EQ(polls_without_an_answer(false, false, false).count, 0);
+    EXPECT_EQ(polls_without_an_answer(false, false).count, 0);
 }
 
 TEST(ModeEvidence, AnswerEndsThePause)
 {
     ModeEvidence evidence = heard_once_a_second();
-    EXPECT_TRUE(evidence.is_due(false, true, kHeardFrom + 4.5F));
+    EXPECT_TRUE(evidence.is_due(true, kHeardFrom + 4.5F));
     evidence.note_heartbeat(kHeardFrom + 4.52F);
     evidence.note_request(kHeardFrom + 4.54F);
-    EXPECT_TRUE(evidence.is_due(false, true, kHeardFrom + 4.56F)) << "the next question, not the last one again";
+    EXPECT_TRUE(evidence.is_due(true, kHeardFrom + 4.56F)) << "the next question, not the last one again";
 }
 
 /// Each HEARTBEAT of the autopilot's own is followed after `delay` by one that was asked for.
@@ -91,7 +87,7 @@ TEST(ModeEvidence, GapsToAndFromAHeartbeatThatWasAskedForAreNotThePeriod)
         ModeEvidence evidence = heard_once_a_second();
         for (int i = 5; i < 12; ++i) {
             const TimePoint asked = kHeardFrom + static_cast<float>(i - 1) + delay;
-            ASSERT_TRUE(evidence.is_due(true, true, asked + -0.02F)) << i;
+            ASSERT_TRUE(evidence.is_due(true, asked + -0.02F)) << i;
             evidence.note_heartbeat(asked);
             evidence.note_heartbeat(kHeardFrom + static_cast<float>(i));
         }
@@ -105,7 +101,7 @@ TEST(ModeEvidence, GapBetweenTwoHeartbeatsThatWereAskedForIsNotThePeriod)
     ModeEvidence evidence = heard_once_a_second();
     for (int i = 1; i <= 9; ++i) {
         const TimePoint now = kHeardFrom + 4.0F + 0.3F * static_cast<float>(i);
-        ASSERT_TRUE(evidence.is_due(false, true, now + -0.02F)) << i;
+        ASSERT_TRUE(evidence.is_due(true, now + -0.02F)) << i;
         evidence.note_heartbeat(now);
     }
     EXPECT_TRUE(evidence.is_fresh(kHeardFrom + 6.7F + 1.4F));

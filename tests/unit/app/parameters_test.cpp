@@ -266,7 +266,7 @@ std::vector<Route> routes()
         same(Param::reserve, 0.9F, [](C c) { return c.supervisor.reserve; }),
         same(Param::settle, 1.9F, [](C c) { return c.supervisor.settle; }),
         {Param::rate, 10, [](C c) { return c.setpoint_period; }, 0.1F},
-        {Param::standby, 1, [](C c) { return c.standby_stream ? 1.0F : 0.0F; }, 1},
+        {Param::standby, 0, [](C c) { return c.stands_by ? 1.0F : 0.0F; }, 0},
         {Param::ask_rates, 0, [](C c) { return c.ask_rates ? 1.0F : 0.0F; }, 0},
         {Param::methods, 2, [](C c) { return static_cast<float>(c.supervisor.order.size()); }, 1},
         {Param::methods, 3, [](C c) { return static_cast<float>(c.supervisor.order.size()); }, 2},

@@ -73,7 +73,7 @@ struct Bench {
     TimePoint now{1'000'000};
     link::AutopilotReport last;
     link::AutopilotStack stack = link::AutopilotStack::unknown;
-    bool keep_stream = false;
+    bool stands_by = false;
 
     TakeoverOutput step(const Step& s)
     {
@@ -84,7 +84,7 @@ struct Bench {
         }
         input.report = last;
         input.report.stack = stack;
-        input.keep_stream = keep_stream;
+        input.stands_by = stands_by;
         return takeover.update(input, now);
     }
     [[nodiscard]] Control control() const { return takeover.control(); }
@@ -116,7 +116,7 @@ inline TakeoverOutput varied(Bench& b, const Step& s, const Change& change)
     TakeoverInput input = input_of(s);
     input.report = input.has_report ? input.report : b.last;
     input.report.stack = b.stack;
-    input.keep_stream = b.keep_stream;
+    input.stands_by = b.stands_by;
     change(input);
     b.last = input.report;
     return b.takeover.update(input, b.now);

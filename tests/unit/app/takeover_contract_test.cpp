@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The contract of the take-over, one sentence and one input at a time: conflicts, tries, vehicles, drops.
+#include <array>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -103,7 +104,7 @@ TEST(TakeoverContract, VehicleOnTheGroundDisarmedOrNotSteerableIsNeitherProvenNo
     for (std::size_t i = 0; i < unfit.size(); ++i) {
         Bench b;
         b.stack = link::AutopilotStack::px4;
-        b.keep_stream = true;
+        b.stands_by = true;
         varied(b, calm(Beat::former), unfit[i]);
         EXPECT_FALSE(b.takeover.proving()) << i;
         varied(b, wants(Beat::former), unfit[i]);
@@ -124,9 +125,64 @@ TEST(TakeoverContract, StreamIsProvenToAPx4AloneAndOnlyWhenAskedTo)
         for (const bool keep : {false, true}) {
             Bench b;
             b.stack = stack;
-            b.keep_stream = keep;
+            b.stands_by = keep;
             b.step(calm(Beat::former));
             EXPECT_EQ(b.takeover.proving(), keep && stack == link::AutopilotStack::px4);
+        }
+    }
+}
+
+/// An autopilot that answers 0.04 s after each question; counts the questions.
+struct Answering {
+    Bench bench;
+    int questions = 0;
+    std::array<bool, 2> on_the_line{};
+
+    TakeoverOutput step(bool wants, bool may_act = true, Beat natural = Beat::none)
+    {
+        const Beat beat = on_the_line[0] ? Beat::former : natural;
+        const TakeoverOutput out = bench.step({wants, may_act, beat, 0.02F, false});
+        on_the_line = {on_the_line[1], out.ask_heartbeat};
+        questions += out.ask_heartbeat ? 1 : 0;
+        return out;
+    }
+};
+
+/// A second of waiting makes no difference to an intruder that is seen in time, and 0.06 s do to one that is not.
+TEST(TakeoverContract, StandingByTheModeIsAskedForInTheStepInWhichItIsWanted)
+{
+    for (const auto stack : {link::AutopilotStack::px4, link::AutopilotStack::ardupilot}) {
+        Answering a;
+        a.bench.stack = stack;
+        a.bench.stands_by = true;
+        a.step(false, true, Beat::former);
+        for (int i = 0; i < 500; ++i) {
+            ASSERT_EQ(a.step(false).action, TakeoverAction::none);
+            Answering now = a;
+            ASSERT_EQ(now.step(true).action, TakeoverAction::request_external) << i;
+        }
+        EXPECT_LE(a.questions, 120) << "of ten seconds";
+    }
+}
+
+TEST(TakeoverContract, AHeartbeatIsKeptReadyOnlyWhereItMayBeNeeded)
+{
+    for (const auto stack : {link::AutopilotStack::px4, link::AutopilotStack::ardupilot}) {
+        for (const bool stands_by : {false, true}) {
+            for (const bool may_act : {false, true}) {
+                for (const Beat mode : {Beat::former, Beat::manual, Beat::hold, Beat::disarmed}) {
+                    Bench b;
+                    b.stack = stack;
+                    b.stands_by = stands_by;
+                    b.step({false, may_act, mode, 0.02F, false});
+                    int questions = 0;
+                    for (int i = 0; i < 50; ++i) {
+                        questions += b.step({false, may_act, Beat::none, 0.02F, false}).ask_heartbeat ? 1 : 0;
+                    }
+                    EXPECT_EQ(questions > 0, stands_by && may_act && mode == Beat::former);
+                    EXPECT_LE(questions, 10) << "a second without an answer";
+                }
+            }
         }
     }
 }
@@ -135,7 +191,7 @@ TEST(TakeoverContract, NoStreamIsProvenWhileAnAnswerIsOpenOrAfterTheSticksMoved)
 {
     Bench b;
     b.stack = link::AutopilotStack::px4;
-    b.keep_stream = true;
+    b.stands_by = true;
     b.step(wants(Beat::former));
     ASSERT_EQ(b.step(wants(Beat::none, 0.1F)).action, TakeoverAction::request_external);
     b.step(fault(Beat::none));
@@ -170,7 +226,7 @@ TEST(TakeoverContract, DropEndsTheStreamThatIsProvenAndForgetsTheModeSeen)
     for (const bool by_fault : {false, true}) {
         Bench b;
         b.stack = link::AutopilotStack::px4;
-        b.keep_stream = true;
+        b.stands_by = true;
         b.step(calm(Beat::former));
         ASSERT_TRUE(b.takeover.proving());
         b.takeover.drop(by_fault);

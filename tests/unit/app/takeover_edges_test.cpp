@@ -125,7 +125,7 @@ TEST(TakeoverEdges, WithoutAnyHeartbeatTheWaitIsThatOfAllTries)
 
 TEST(TakeoverEdges, RefusalIsAnsweredByAnotherRequestAfterTheStacksOwnPause)
 {
-    for (const auto& [stack, pause] : {std::pair{link::AutopilotStack::ardupilot, Takeover::kAnnounce},
+    for (const auto& [stack, pause] : {std::pair{link::AutopilotStack::ardupilot, Takeover::kRetry},
                                        std::pair{link::AutopilotStack::px4, Takeover::kAskAgain}}) {
         Bench b;
         b.stack = stack;
@@ -144,12 +144,12 @@ TEST(TakeoverEdges, TriesOfAPx4CountOnceTheStreamIsOldEnough)
     for (const std::int64_t early : {std::int64_t{0}, std::int64_t{1}}) {
         Bench b;
         b.stack = link::AutopilotStack::px4;
-        b.keep_stream = true;
+        b.stands_by = true;
         b.step(calm(Beat::former));
         const TimePoint proven_from = b.now;
         ASSERT_TRUE(b.takeover.proving());
-        step_at(b, proven_from, 1.125F, wants(Beat::former));
-        ASSERT_EQ(b.control(), Control::announcing);
+        step_at(b, proven_from, 1.125F, wants(Beat::none));
+        ASSERT_EQ(b.takeover.diagnostics().requests, 0U) << "the HEARTBEAT is too old";
         int requests = 0;
         for (int i = 0; i < 9; ++i) {
             const TakeoverOutput out = i == 0 ? step_at(b, proven_from, Takeover::kProof, wants(Beat::former), early)

@@ -77,10 +77,8 @@ TEST(TakeoverEvidence, AnswerLetsTheRequestGoAtOnce)
     Bench b = on_mission(link::AutopilotStack::ardupilot);
     b.step(calm(Beat::none, 0.5F));
     EXPECT_TRUE(b.step(kWant).ask_heartbeat);
-    b.step(kWant);
-    b.step(wants(Beat::former));
-    EXPECT_EQ(b.step(wants(Beat::none, 0.021F)).action, TakeoverAction::request_external)
-        << "0.06 s after the stream began";
+    EXPECT_EQ(b.step(kWant).action, TakeoverAction::none);
+    EXPECT_EQ(b.step(wants(Beat::former)).action, TakeoverAction::request_external);
 }
 
 TEST(TakeoverEvidence, WithoutAnAnswerAHeartbeatOfOneAndAHalfPeriodsIsGoodEnough)
@@ -166,8 +164,8 @@ TEST(TakeoverEvidence, AsksForHeartbeatsWhileInControl)
             b.step(wants(Beat::external));
         }
     }
-    EXPECT_GE(asked, 4);
-    EXPECT_LE(asked, 6) << "each 0.4 s";
+    EXPECT_GE(asked, 20) << "the newest is evidence at any time";
+    EXPECT_LE(asked, 40);
 }
 
 TEST(TakeoverEvidence, FormerModeIsNotGivenBackOnAnOldHeartbeat)

@@ -204,11 +204,10 @@ TEST(TakeoverMemory, NoStreamIsProvenToAVehicleThatDidNotFollow)
 {
     Bench b;
     b.stack = link::AutopilotStack::px4;
-    b.keep_stream = true;
+    b.stands_by = true;
     b.step(calm(Beat::former));
     ASSERT_TRUE(b.takeover.proving());
-    b.step(wants(Beat::former, 2.0F));
-    ASSERT_EQ(b.step(wants(Beat::none, 0.07F)).action, TakeoverAction::request_external);
+    ASSERT_EQ(b.step(wants(Beat::former, 2.0F)).action, TakeoverAction::request_external);
     ASSERT_EQ(b.step(wants(Beat::external)).event, TakeoverEvent::took_over);
     ASSERT_EQ(varied(b, kWant, [](TakeoverInput& in) { in.unfollowed = true; }).event, TakeoverEvent::unfollowed);
     b.step(calm(Beat::hold));

@@ -19,6 +19,7 @@ struct Witness {
     bool flown = false;      ///< and was confirmed
     int requests = 0;        ///< in this conflict, since last in control
     int most_requests = Takeover::kTries;
+    bool needs_stream = true;  ///< before each request
     TimePoint streaming_since{};  ///< meaningful while streaming
     TimePoint requested{};
     bool seen_external = false;  ///< as the newest report
@@ -52,7 +53,7 @@ struct Witness {
             return "acts after the pilot's mode in the same conflict";
         }
         if (out.action == TakeoverAction::request_external) {
-            if (!was_streaming || after.now - streaming_since < Takeover::kAnnounce) {
+            if (needs_stream && (!was_seen || after.now - streaming_since < Takeover::kAnnounce)) {
                 return "asks for the external mode before the stream began";
             }
             if (++requests > most_requests) {
@@ -159,6 +160,13 @@ struct Search {
     }
 };
 
+std::vector<Step> with_refusals()
+{
+    return {wants(Beat::none, 1.0F), wants(Beat::former),   wants(Beat::external), wants(Beat::manual),
+            calm(Beat::none, 1.0F),  calm(Beat::former),    calm(Beat::external),  denied(0.1F),
+            fault(Beat::none),       fault(Beat::external), denied(0.25F),         wants(Beat::hold)};
+}
+
 std::vector<Step> whole_alphabet()
 {
     std::vector<Step> steps;
@@ -215,16 +223,29 @@ TEST(TakeoverSmallWorld, EverySequenceOfStepsFromEveryState)
 TEST(TakeoverSmallWorld, EverySequenceOfSixStepsWithAPx4)
 {
     Search search;
-    search.alphabet = {wants(Beat::none, 1.0F), wants(Beat::former),   wants(Beat::external), wants(Beat::manual),
-                       calm(Beat::none, 1.0F),  calm(Beat::former),    calm(Beat::external),  denied(0.1F),
-                       fault(Beat::none),       fault(Beat::external), denied(0.25F),         wants(Beat::hold)};
+    search.alphabet = with_refusals();
     Bench px4;
     px4.stack = link::AutopilotStack::px4;
     Witness witness;
     witness.most_requests = Takeover::kTries + static_cast<int>(Takeover::kProof / Takeover::kAskAgain) + 1;
     ASSERT_TRUE(search.explore_after({wants(Beat::former)}, 6, px4, witness));
-    px4.keep_stream = true;
+    px4.stands_by = true;
     ASSERT_TRUE(search.explore_after({calm(Beat::former)}, 6, px4, witness));
+    EXPECT_GT(search.reached[static_cast<std::size_t>(Control::refused)], 0U);
+}
+
+/// Standing by, an ArduPilot is asked in the tick in which control is wanted.
+TEST(TakeoverSmallWorld, EverySequenceOfSixStepsWithAnArduPilot)
+{
+    Search search;
+    search.alphabet = with_refusals();
+    Bench copter;
+    copter.stack = link::AutopilotStack::ardupilot;
+    copter.stands_by = true;
+    Witness witness;
+    witness.needs_stream = false;
+    ASSERT_TRUE(search.explore_after({calm(Beat::former)}, 6, copter, witness));
+    EXPECT_GT(search.reached[static_cast<std::size_t>(Control::ours)], 0U);
     EXPECT_GT(search.reached[static_cast<std::size_t>(Control::refused)], 0U);
 }
 
