@@ -127,6 +127,15 @@ std::uint16_t Coprocessor::find_faults(TimePoint now, bool stalled) const noexce
     return static_cast<std::uint16_t>(faults);
 }
 
+/// Its id; 0: a conflict with none.
+static std::uint32_t track_of(const std::optional<world::Conflict>& conflict,
+                              std::span<const world::Track> tracks) noexcept
+{
+    const bool is_one =
+        conflict && conflict->threat.kind == world::ThreatKind::track && conflict->threat.index < tracks.size();
+    return is_one ? tracks[conflict->threat.index].id : 0;
+}
+
 avoid::Guidance Coprocessor::decide(TimePoint now, const vehicle::VehicleState& own,
                                     std::span<const world::Track> tracks, StepReport& report) noexcept
 {
@@ -160,6 +169,7 @@ std::span<const world::Track> Coprocessor::decide_and_control(TimePoint now, Ste
         tracks = picture_.tracks(now);
         report.guidance = decide(now, own, tracks, report);
         report.work = report.guidance.work;
+        report.conflict_track = track_of(report.guidance.conflict, tracks);
     }
     const TakeoverEvent event =
         control_.update({now, own, own_.measured().velocity, tracks, autopilot_}, c, report, outbox_);
@@ -174,12 +184,13 @@ std::span<const world::Track> Coprocessor::decide_and_control(TimePoint now, Ste
 
 void Coprocessor::report_state(TimePoint now, std::span<const world::Track> tracks, StepReport& report) noexcept
 {
-    const bool is_line_free = intake_.is_port_open() && outbox_.is_line_empty();
+    StepLog* const log = outbox_.log();
+    const bool is_line_free = log != nullptr && intake_.is_port_open() && outbox_.is_line_empty();
     const Reported of{params_.configuration(), autopilot_, own_, picture_, decision_, control_, passive_,
                       intake_.was_bus_up()};
     report.state = Telemetry::system_state(report, of);
     telemetry_.report_to_autopilot(now, report, of, outbox_);
-    if (StepLog* const log = outbox_.log(); log != nullptr) {
+    if (log != nullptr) {
         report.bytes_out = outbox_.last_written();
         log->end({now, report, own_.measured(), tracks, params_.parameters(), diagnostics_, decision_.diagnostics(),
                   last_plan(), last_duration_us_, is_line_free},

@@ -50,6 +50,7 @@ struct StepReport {
     std::uint16_t cylinders = 0;   ///< closed volumes and storm cells that are known
     Control control = Control::autopilot;
     OwnSource own_source = OwnSource::none;
+    std::uint32_t conflict_track = 0;  ///< id of the track that guidance.conflict is with; 0: none
     avoid::Guidance guidance;
 };
 

@@ -36,13 +36,6 @@ static_assert(kMaxContent >= sizeof(StepTopic) && kMaxContent >= sizeof(TrackTop
 
 std::uint64_t stamp_of(TimePoint now) { return static_cast<std::uint64_t>(now.us); }
 
-std::uint32_t track_in_conflict(const app::LoggedStep& step) noexcept
-{
-    const auto& conflict = step.report.guidance.conflict;
-    const bool is_track = conflict && conflict->threat.kind == world::ThreatKind::track;
-    return is_track && conflict->threat.index < step.tracks.size() ? step.tracks[conflict->threat.index].id : 0;
-}
-
 }  // namespace
 
 void LogStream::begin(TimePoint now, std::span<const link::LogAck> acks) noexcept
@@ -227,13 +220,12 @@ void LogStream::note_text(link::Severity severity, std::string_view text) noexce
 void LogStream::log_step(const app::LoggedStep& step) noexcept
 {
     const app::StepReport& report = step.report;
-    const std::uint32_t id = track_in_conflict(step);
     const Last now{
-        report.state, report.faults, report.control, report.guidance.state, id, report.guidance.conflict.has_value()};
+        report.state, report.faults, report.control, report.guidance.state, report.conflict_track, report.guidance.conflict.has_value()};
     log_parameters(step.parameters);
     const bool has_changed = !last_ || *last_ != now || report.guidance.new_manoeuvre;
     if (has_changed || tick_ % kStepTicks == 0) {
-        StepTopic topic = step_topic(report, now_, id);
+        StepTopic topic = step_topic(report, now_);
         topic.step = step.counts.steps;
         topic.duration_us = step.duration_us;
         put(TopicId::step, topic);

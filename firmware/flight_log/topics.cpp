@@ -71,7 +71,7 @@ static_assert(sizeof(avoid::Diagnostics) == kAvoidCounters.size() * sizeof(std::
 std::span<const Counter<app::Diagnostics>> app_counters() noexcept { return kAppCounters; }
 std::span<const Counter<avoid::Diagnostics>> avoid_counters() noexcept { return kAvoidCounters; }
 
-StepTopic step_topic(const app::StepReport& r, TimePoint now, std::uint32_t conflict_id) noexcept
+StepTopic step_topic(const app::StepReport& r, TimePoint now) noexcept
 {
     constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
     const avoid::Guidance& g = r.guidance;
@@ -81,7 +81,7 @@ StepTopic step_topic(const app::StepReport& r, TimePoint now, std::uint32_t conf
     t.bytes_out = r.bytes_out;
     t.work = r.work;
     t.transitions = g.transitions;
-    t.conflict_id = conflict_id;
+    t.conflict_id = r.conflict_track;
     t.velocity = xyz_of(g.velocity);
     t.margin = g.margin;
     t.cost = g.cost;

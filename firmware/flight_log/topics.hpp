@@ -214,9 +214,7 @@ template <class T>
 }
 
 /// The step's topic, but for its number and duration.
-/// @param conflict_id  of the track in conflict; 0: none
-[[nodiscard, gnu::cold]] StepTopic step_topic(const app::StepReport& report, TimePoint now,
-                                              std::uint32_t conflict_id) noexcept;
+[[nodiscard, gnu::cold]] StepTopic step_topic(const app::StepReport& report, TimePoint now) noexcept;
 /// @param own   own position [m]
 /// @param plan  the geometric planner's last one; null: there is no such planner
 [[nodiscard, gnu::cold]] DecisionTopic decision_topic(const app::StepReport& report, const Vec3& own,

@@ -49,7 +49,7 @@ TEST_F(LogCommand, SumsUpALog)
     EXPECT_EQ(run("good.ulg"), 0) << out;
     EXPECT_TRUE(says(std::to_string(flight().steps) + " steps")) << out;
     EXPECT_TRUE(says("decisions: " + std::to_string(flight().manoeuvres))) << out;
-    EXPECT_TRUE(says("control announcing -> requesting: conflict with track")) << out;
+    EXPECT_TRUE(says("control autopilot -> requesting: conflict with track")) << out;
     EXPECT_TRUE(says("end: complete")) << out;
     EXPECT_TRUE(says("avoid_counters.plans")) << out;
 }
@@ -66,7 +66,7 @@ TEST_F(LogCommand, SumsUpALogOfABoardWhichCannotBeReplayed)
     EXPECT_EQ(run("board.ulg"), 0) << out;
     EXPECT_TRUE(says("end: complete")) << out;
     EXPECT_TRUE(says("decisions: " + std::to_string(s.manoeuvres))) << out;
-    EXPECT_TRUE(says("control autopilot -> announcing")) << out;
+    EXPECT_TRUE(says("control autopilot -> requesting")) << out;
     EXPECT_TRUE(says(" steps, their durations were not measured\n")) << out;
     EXPECT_TRUE(says("stream.parts")) << out;
     EXPECT_TRUE(says("app_counters.steps")) << out;

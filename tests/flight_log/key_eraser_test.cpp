@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <random>
 
 #include "firmware/linux/flight_log/key_eraser.hpp"
@@ -39,7 +40,7 @@ std::vector<std::byte> left_at_once(std::span<const std::byte> stream)
     for (std::size_t i = 0; i + kHeader <= stream.size(); ++i) {
         const auto byte = [&](std::size_t k) { return static_cast<unsigned>(stream[i + k]); };
         const unsigned id = byte(7) | byte(8) << 8U | byte(9) << 16U;
-        if (byte(0) == 0xFD && byte(1) <= 42 && byte(2) <= 1 && id == 256) {
+        if (byte(0) == 0xFD && byte(1) > 10 && byte(1) <= 42 && byte(2) <= 1 && id == 256) {
             for (std::size_t k = i + kHeader; k < std::min(i + kHeader + byte(1) + 2, stream.size()); ++k) {
                 kept[k] = std::byte{0};
             }
@@ -135,6 +136,19 @@ TEST(KeyEraser, LeavesOtherFramesAlone)
 }
 
 /// The header, or a part of it, is missing: what can follow it is overwritten, and no more than kUnknown bytes.
+/// The 254th frame of an autopilot whose ids are 1: its number begins what would be a SETUP_SIGNING of one byte.
+TEST(KeyEraser, LeavesAHeaderThatAnnouncesNoKeyAlone)
+{
+    constexpr std::array<unsigned, 16> kMissionCurrent{0xFD, 4, 0, 0, 0xFD, 1, 1, 42, 0, 0, 1, 0, 1, 0, 0x12, 0x34};
+    std::vector<std::byte> stream;
+    for (const unsigned byte : kMissionCurrent) {
+        stream.push_back(static_cast<std::byte>(byte));
+    }
+    for (const std::size_t size : {std::size_t{1}, std::size_t{5}, std::size_t{16}}) {
+        EXPECT_EQ(left_by_eraser(stream, {size}), stream) << size;
+    }
+}
+
 TEST(KeyEraser, OverwritesWhatMayFollowMissingBytes)
 {
     const std::vector<std::byte> frame = setup_signing_frame();

@@ -52,8 +52,9 @@ std::size_t size_index(std::size_t n) noexcept
 }
 
 /// "conflict with track 7 in 3.2 s, faults none": why something changed.
-void add_reason(const app::StepReport& report, std::uint32_t id, Line& line)
+void add_reason(const app::StepReport& report, Line& line)
 {
+    const std::uint32_t id = report.conflict_track;
     if (const auto& conflict = report.guidance.conflict) {
         line.add_text("conflict with ").add_text(name_of(conflict->threat.kind));
         line.add(" %u in %.1f s", id != 0 ? id : static_cast<unsigned>(conflict->threat.index),
@@ -65,16 +66,6 @@ void add_reason(const app::StepReport& report, std::uint32_t id, Line& line)
 }
 
 }  // namespace
-
-std::uint32_t track_in_conflict(const app::StepReport& report, app::Coprocessor& coprocessor, TimePoint now) noexcept
-{
-    const auto& conflict = report.guidance.conflict;
-    if (!conflict || conflict->threat.kind != world::ThreatKind::track) {
-        return 0;
-    }
-    const std::span<const world::Track> tracks = coprocessor.tracks(now);
-    return conflict->threat.index < tracks.size() ? tracks[conflict->threat.index].id : 0;
-}
 
 FlightLog::FlightLog(Output& output, const Limits& limits, const files::ParamValues& parameters)
     : output_(output),
@@ -249,13 +240,13 @@ void FlightLog::put_decision(const app::StepReport& report, const app::Coprocess
     }
 }
 
-void FlightLog::put_changes(const app::StepReport& report, std::uint32_t id, TimePoint now) noexcept
+void FlightLog::put_changes(const app::StepReport& report, TimePoint now) noexcept
 {
     if (report.state != last_.state || report.faults != last_.faults) {
         const bool is_bad = report.state >= link::SystemState::critical;
         Line line;
         line.add_text("state ").add_text(name_of(report.state)).add_text(": ");
-        add_reason(report, id, line);
+        add_reason(report, line);
         put_text(is_bad ? ulog::Level::critical : ulog::Level::info, now, line.view());
     }
     if (report.control != last_.control) {
@@ -265,7 +256,7 @@ void FlightLog::put_changes(const app::StepReport& report, std::uint32_t id, Tim
             .add_text(" -> ")
             .add_text(name_of(report.control))
             .add_text(": ");
-        add_reason(report, id, line);
+        add_reason(report, line);
         put_text(ulog::Level::notice, now, line.view());
     }
     const avoid::Guidance& g = report.guidance;
@@ -275,7 +266,7 @@ void FlightLog::put_changes(const app::StepReport& report, std::uint32_t id, Tim
         line.add_text(g.new_manoeuvre ? ", new manoeuvre " : ", ").add_text(name_of(g.kind));
         line.add(" by method %u, margin %.2f m, cost %.3f: ", g.by, static_cast<double>(g.margin),
                  static_cast<double>(g.cost));
-        add_reason(report, id, line);
+        add_reason(report, line);
         put_text(ulog::Level::notice, now, line.view());
     }
 }
@@ -302,15 +293,14 @@ void FlightLog::end(const app::StepReport& report, app::Coprocessor& coprocessor
                     std::int64_t took_us) noexcept
 {
     put_record(began);
-    const std::uint32_t id = track_in_conflict(report, coprocessor, began);
-    StepTopic step = step_topic(report, began, id);
+    StepTopic step = step_topic(report, began);
     step.step = steps_++;
     step.duration_us = static_cast<std::uint32_t>(std::clamp<std::int64_t>(took_us, 0, 0xFFFFFFFF));
     put(TopicId::step, step);
     put_own(report, coprocessor, began);
     if (report.state != last_.state || report.faults != last_.faults || report.control != last_.control ||
         report.guidance.state != last_.guidance || report.guidance.new_manoeuvre) {
-        put_changes(report, id, began);
+        put_changes(report, began);
     }
     if (!recorder_.texts().texts().empty()) {
         put_sent_texts(began);

@@ -15,10 +15,6 @@
 
 namespace jink::flightlog {
 
-/// Id of the track in conflict, after the step at `now`; 0: there is none.
-[[nodiscard]] std::uint32_t track_in_conflict(const app::StepReport& report, app::Coprocessor& coprocessor,
-                                              TimePoint now) noexcept;
-
 /// The control loop's side of a flight log: composes what a step did and gives it to an output. Never waits, and
 /// allocates nothing after its construction.
 ///
@@ -91,7 +87,7 @@ private:
     void put_counters_of(TopicId id, std::span<const Counter<T>> counters, const T& diagnostics,
                          TimePoint now) noexcept;
     void put_decision(const app::StepReport& report, const app::Coprocessor& coprocessor, TimePoint now) noexcept;
-    void put_changes(const app::StepReport& report, std::uint32_t conflict_id, TimePoint now) noexcept;
+    void put_changes(const app::StepReport& report, TimePoint now) noexcept;
     void put_changed_parameters(const app::Parameters& parameters) noexcept;
 
     static constexpr std::size_t kPartHead = ulog::kDataHeader + HalHead::kBytes;
