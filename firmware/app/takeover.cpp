@@ -158,8 +158,7 @@ TakeoverOutput Takeover::ask(const TakeoverInput& input, TimePoint now) noexcept
         return {};
     }
     // The newest answer counts: an earlier one may be that to a request before.
-    request_.denied =
-        control_ == Control::requesting && !input.mode_accepted && (request_.denied || input.mode_denied);
+    request_.denied = control_ == Control::requesting && !input.mode_accepted && (request_.denied || input.mode_denied);
     request_.granted = !request_.denied && (request_.granted || input.mode_accepted);
     const bool unproven = stack == link::AutopilotStack::px4 && now - stream_.since < kProof;
     const bool again = request_.denied && waited >= (unproven ? kAskAgain : kRetry);

@@ -163,8 +163,8 @@ public:
     }
     [[nodiscard]] const TakeoverDiagnostics& diagnostics() const noexcept { return diagnostics_; }
 
-    /// Stream this long before the request [s]: PX4's commander, which runs 100 times a second, refuses OFFBOARD, with a
-    /// text to the pilot, where it reads the first set-point and the request in one pass.
+    /// Stream this long before the request [s]: PX4's commander, which runs 100 times a second, refuses OFFBOARD, with
+    /// a text to the pilot, where it reads the first set-point and the request in one pass.
     static constexpr Seconds kAnnounce = 0.015F;
     /// Wait this long for a confirmation [s].
     static constexpr Seconds kConfirm = 1.0F;

@@ -220,8 +220,8 @@ void LogStream::note_text(link::Severity severity, std::string_view text) noexce
 void LogStream::log_step(const app::LoggedStep& step) noexcept
 {
     const app::StepReport& report = step.report;
-    const Last now{
-        report.state, report.faults, report.control, report.guidance.state, report.conflict_track, report.guidance.conflict.has_value()};
+    const Last now{report.state,          report.faults,         report.control,
+                   report.guidance.state, report.conflict_track, report.guidance.conflict.has_value()};
     log_parameters(step.parameters);
     const bool has_changed = !last_ || *last_ != now || report.guidance.new_manoeuvre;
     if (has_changed || tick_ % kStepTicks == 0) {

@@ -147,7 +147,8 @@ TEST(LogStream, TakesItsShareOfTheLineAtMost)
 
 /// A line that takes less than jink itself sends: no part waits on it, nothing of jink's own is lost to the log, and
 /// a dropout message follows.
-/// A line that takes nothing for three seconds, then a changed parameter. False: the ring happens to have a place for it.
+/// A line that takes nothing for three seconds, then a changed parameter. False: the ring happens to have a place for
+/// it.
 bool stall_and_change(StreamFlight& s, int ticks_before)
 {
     s.fly(ticks_before);

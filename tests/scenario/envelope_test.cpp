@@ -130,8 +130,8 @@ TEST(Phases, AHouseAcrossAStreetIsPassed)
 }
 
 /// A co-processor delayed beyond the age limit of the own state gives up control and reports this: the autopilot is
-/// requested to hold, and holds until the mission is resumed (docs/guides/take_over.md). Where control was granted while
-/// it was delayed, it never saw that: the hold is then somebody else's mode.
+/// requested to hold, and holds until the mission is resumed (docs/guides/take_over.md). Where control was granted
+/// while it was delayed, it never saw that: the hold is then somebody else's mode.
 TEST(Phases, HeldUpBeyondTheAgeOfOwnStateItDropsControlAndHolds)
 {
     const Scenario wall = scenario("scan_wall");

@@ -26,8 +26,8 @@ constexpr float kArmed = 128.0F;
 /// PX4 enters OFFBOARD if the last set-point is not older than this [us] (offboardCheck.cpp since v1.14). PX4's
 /// documentation (Offboard Mode, v1.16) requires a second of set-points with gaps up to this: Faults::offboard_proof.
 constexpr Micros kStreamGap = kSecond / 2;
-/// Its commander reads set-points once in this time, and refuses a request that comes in the pass of the first one, with
-/// a text (Commander.cpp: run, offboardControlCheck, printRejectMode) [us].
+/// Its commander reads set-points once in this time, and refuses a request that comes in the pass of the first one,
+/// with a text (Commander.cpp: run, offboardControlCheck, printRejectMode) [us].
 constexpr Micros kCommanderPass = kSecond / 100;
 /// Set-points in transit when another sender chooses a mode are tolerated for this time [us].
 constexpr Micros kGrace = kSecond / 5;
@@ -133,8 +133,8 @@ std::uint8_t Autopilot::set_mode(const CommandLong& command)
             return kDenied;
         }
         const Micros proof = std::max(kCommanderPass, to_micros(scenario_.faults.offboard_proof));
-        const bool stream = last_setpoint_ >= 0 && world_.now() - last_setpoint_ <= kStreamGap &&
-                            world_.now() - stream_since_ >= proof;
+        const bool stream =
+            last_setpoint_ >= 0 && world_.now() - last_setpoint_ <= kStreamGap && world_.now() - stream_since_ >= proof;
         if (scenario_.stack == Stack::px4 && !stream) {
             server_.complain("Switching to Offboard is currently not available");
             return kTemporarilyRejected;

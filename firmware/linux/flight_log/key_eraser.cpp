@@ -19,9 +19,8 @@ bool is_setup_signing(const std::byte* header)
 {
     return header[kMessageId] == std::byte{0} &&  // first: few other frames get further
            header[0] == link::mavlink::kStartV2 && static_cast<std::size_t>(header[kLength]) > kKey &&
-           static_cast<std::size_t>(header[kLength]) <= kMaxPayload &&
-           static_cast<unsigned>(header[kFlags]) <= 1U && header[kMessageId + 1] == std::byte{1} &&
-           header[kMessageId + 2] == std::byte{0};
+           static_cast<std::size_t>(header[kLength]) <= kMaxPayload && static_cast<unsigned>(header[kFlags]) <= 1U &&
+           header[kMessageId + 1] == std::byte{1} && header[kMessageId + 2] == std::byte{0};
 }
 
 }  // namespace

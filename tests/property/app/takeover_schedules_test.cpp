@@ -309,11 +309,12 @@ TEST(TakeoverSchedules, ControlIsTakenAndGivenBackInTimeOnAHealthyLine)
                 for (const bool stands_by : {false, true}) {
                     Spread& s = spread[stands_by ? 1 : 0];
                     fly_all(px4, serves, proof, stands_by, s);
-                    std::printf("[ taken     ] %s, 1 Hz, %s, stream of %.0f s wanted, %s: after %.3f s on average, %.2f s "
-                                "at most\n",
-                                px4 ? "PX4" : "ArduPilot", serves ? "requests of HEARTBEATs served" : "not served",
-                                static_cast<double>(proof) / kSecond, stands_by ? "standing by" : "not prepared",
-                                static_cast<double>(s.sum) * 0.02 / s.flights, static_cast<double>(s.latest) * 0.02);
+                    std::printf(
+                        "[ taken     ] %s, 1 Hz, %s, stream of %.0f s wanted, %s: after %.3f s on average, %.2f s "
+                        "at most\n",
+                        px4 ? "PX4" : "ArduPilot", serves ? "requests of HEARTBEATs served" : "not served",
+                        static_cast<double>(proof) / kSecond, stands_by ? "standing by" : "not prepared",
+                        static_cast<double>(s.sum) * 0.02 / s.flights, static_cast<double>(s.latest) * 0.02);
                 }
                 EXPECT_LE(spread[1].sum, spread[0].sum);
             }

@@ -229,9 +229,9 @@ struct Witness {
         }
         given_back_at = beat.number == left && seen_before ? tick : given_back_at;
         held_at = beat.number == kHold && last_action == TakeoverAction::request_hold ? tick : held_at;
-        const bool engaged =
-            given_back_at != tick && held_at != tick && (control == Control::announcing || control == Control::requesting ||
-                                      control == Control::ours || control == Control::returning);
+        const bool engaged = given_back_at != tick && held_at != tick &&
+                             (control == Control::announcing || control == Control::requesting ||
+                              control == Control::ours || control == Control::returning);
         hands_off = hands_off || (engaged && !ours && beat.number != kHold);
     }
 

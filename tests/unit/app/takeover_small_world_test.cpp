@@ -19,7 +19,7 @@ struct Witness {
     bool flown = false;      ///< and was confirmed
     int requests = 0;        ///< in this conflict, since last in control
     int most_requests = Takeover::kTries;
-    bool needs_stream = true;  ///< before each request
+    bool needs_stream = true;     ///< before each request
     TimePoint streaming_since{};  ///< meaningful while streaming
     TimePoint requested{};
     bool seen_external = false;  ///< as the newest report
