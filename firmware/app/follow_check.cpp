@@ -49,8 +49,8 @@ bool FollowCheck::update(const Vec3& asked, const Vec3& velocity, const vehicle:
     if (!begun_ || !is_finite(command) || !is_finite(velocity)) {
         begun_ = is_finite(velocity) && is_finite(command);
         commanded_ = 0.0F;
-        reference_ = command_ = command;
-        start_ = velocity;
+        reference_ = command;
+        answered_ = 0.0F;
         return false;
     }
     commanded_ += dt;
@@ -59,16 +59,14 @@ bool FollowCheck::update(const Vec3& asked, const Vec3& velocity, const vehicle:
     if ((command - reference_).norm() > kTolerance) {
         // What the command before asked for still goes on for a while.
         missing_ = is_proven_ ? -expected * kAllowance : missing_;
-        if (is_proven_ || (command - command_).norm() > kTolerance) {
-            start_ = velocity;
-        }
+        answered_ = is_proven_ ? 0.0F : answered_;
         is_proven_ = false;
         reference_ = command;
     }
-    command_ = command;
-    is_proven_ = is_proven_ || (command - start_).norm() - (command - velocity).norm() >= kTolerance;
-    const float answered = change.dot(error) / std::max(error.norm(), 1e-3F);
-    const float towards = wing ? std::max(answered, 0.0F) : answered;  // rolling out of a turn goes the wrong way
+    answered_ += error.norm() - (command - velocity).norm();
+    is_proven_ = is_proven_ || answered_ >= kTolerance;
+    const float along = change.dot(error) / std::max(error.norm(), 1e-3F);
+    const float towards = wing ? std::max(along, 0.0F) : along;  // rolling out of a turn goes the wrong way
     if (is_followed(command, velocity)) {
         missing_ = std::max(missing_ - expected * dt, std::min(missing_, 0.0F));
         return false;

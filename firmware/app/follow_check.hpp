@@ -16,14 +16,12 @@ namespace jink::app {
 ///
 /// Tolerance: the larger of kTolerance and kShare of the commanded speed. A vehicle that flies where it shall, only
 /// more slowly (kSlow), counts as following: autopilots have speed limits of their own.
-/// A command that turns little by little is one command for this; a change by more than kTolerance in one tick is
-/// another.
-/// A vehicle that came closer to a command by kTolerance has kAllowance more for another command: it first undoes what
-/// the command before asked for, after a dead time and with limited jerk. From full acceleration to full braking this
-/// takes so long. A vehicle that ignores the first command is noticed 1 s after the command differs from its motion,
-/// one that ignores a later command after 1 s + kAllowance. A command that differs by kTolerance at most is the same
-/// command. No alarm for a vehicle that answers with 2.5 m/s2 and a lag of 0.6 s after a dead time of 0.3 s, in gusts
-/// (tests/property/app/follow_check_property_test.cpp).
+/// A command that differs by kTolerance at most is the same command. A vehicle that came closer to its commands by
+/// kTolerance, in all, has kAllowance more for another command: it first undoes what the command before asked for,
+/// after a dead time and with limited jerk. From full acceleration to full braking this takes so long. A vehicle that
+/// ignores the first command is noticed 1 s after the command differs from its motion, one that ignores a later command
+/// after 1 s + kAllowance. No alarm for a vehicle that answers with 2.5 m/s2 and a lag of 0.6 s after a dead time of
+/// 0.3 s, in gusts (tests/property/app/follow_check_property_test.cpp).
 ///
 /// A fixed wing is commanded course and climb alone, so its speed is not compared. It needs the command first and then
 /// time to roll in: kWingPatience seconds' worth may be missing.
@@ -57,9 +55,8 @@ private:
     TimePoint last_;
     Vec3 velocity_ = Vec3::Zero();
     float missing_ = 0.0F;           ///< change of velocity [m/s]
-    Vec3 command_ = Vec3::Zero();    ///< of the tick before
     Vec3 reference_ = Vec3::Zero();  ///< the command that is_proven_ is about
-    Vec3 start_ = Vec3::Zero();      ///< the velocity from which the vehicle has to come closer
+    float answered_ = 0.0F;          ///< how much closer it came to the commands of each tick, in all [m/s]
     bool is_proven_ = false;         ///< came closer by kTolerance
 };
 

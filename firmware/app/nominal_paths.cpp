@@ -42,17 +42,23 @@ void NominalPaths::update(const vehicle::VehicleState& measured, const vehicle::
         keep(limits);
         on_motion_ = was_on_motion_ || !believes_leg();
     }
+    if (in_control_ && !in_control) {
+        given_back_ = own.stamp;
+    }
     in_control_ = in_control;
     estimate_.add(measured);
     leg_.take(leg);
+    // What was steady under our commands is not the mission's speed.
+    const bool is_autopilots = !in_control && own.stamp - given_back_ >= MotionEstimate::kWindow;
+    const float steady_speed = is_autopilots ? estimate_.steady_speed() : 0.0F;
     if (in_control) {
         leg_.pass_over(own.stamp);
     } else {
-        leg_.judge(own, estimate_.steady_speed());
+        leg_.judge(own, steady_speed);
         was_on_motion_ = was_on_motion_ && believes_leg();
     }
     if (leg_.is_known()) {
-        intended_ = leg_.reference(own, limits, estimate_.steady_speed(), in_control);
+        intended_ = leg_.reference(own, limits, steady_speed, in_control);
     }
     live_.extrapolate(own, estimate_.turn_rate(), limits);
     if (outdated_) {

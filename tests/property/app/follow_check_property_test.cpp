@@ -150,6 +150,38 @@ TEST(FollowCheckLaw, AVehicleThatFollowsABendingCommandIsNotAccusedWhenTheComman
     }
 }
 
+/// A velocity that is renewed with each noisy report jumps to and fro about its mean; then the other side is chosen.
+TEST(FollowCheckLaw, AVehicleThatFollowsAJumpingCommandIsNotAccusedWhenTheCommandTurnsOver)
+{
+    const std::uint64_t cases = number_of("JINK_CASES", 2000);
+    const std::uint64_t seed = number_of("JINK_SEED", 20261129);
+    for (std::uint64_t i = 0; i < cases; ++i) {
+        Random random(seed + i);
+        Craft craft;
+        craft.dead = static_cast<double>(random.uniform(0.1F, 0.25F));
+        craft.lag = static_cast<double>(random.uniform(0.2F, 0.4F));
+        craft.v = {3.2, 3.8, 0.0};
+        for (auto& d : craft.delayed) {
+            d = craft.v;
+        }
+        const auto every = 3 + random.below(4);   // ticks between velocities
+        const auto flip = 50 + random.below(40);  // ticks
+        FollowCheck check;
+        Vec3 command(3.2F, 3.8F, 0.0F);
+        for (std::uint64_t tick = 0; tick < flip + 60; ++tick) {
+            if (tick % every == 0) {
+                const float angle = random.uniform(1.1F, 1.9F);
+                command = Vec3(5.0F * std::cos(angle), 5.0F * std::sin(angle), -1.0F);
+            }
+            const Vec3 asked = tick < flip ? command : Vec3(3.5F, 3.4F, -1.0F);
+            craft.step(asked, random);
+            ASSERT_FALSE(check.update(asked, craft.seen(random, 0.0F), {},
+                                      TimePoint{1'000'000 + static_cast<std::int64_t>(tick) * 20'000}))
+                << "at tick " << tick << " of " << flip << "; JINK_CASES=1 JINK_SEED=" << seed + i;
+        }
+    }
+}
+
 TEST(FollowCheckLaw, AVehicleThatIgnoresItsCommandsIsFoundWithinASecondAndAHalf)
 {
     const std::uint64_t cases = number_of("JINK_CASES", 4000);

@@ -65,6 +65,21 @@ TEST_F(NominalKept, SpeedIsTheMissionsThenTheMeasuredThenTheParameters)
     EXPECT_NEAR(meant(), 7.0F, 1e-3F);
 }
 
+/// Slowly around something, and back on the leg: the mission still flies as fast as before.
+TEST_F(NominalKept, WhatWasSteadyUnderOurCommandsIsNotTheMissionsSpeed)
+{
+    fly(Vec3(7, 0, 0), 2.0F);
+    fly(Vec3(1.4F, 0, 0), 3.0F, true);
+    for (int i = 0; i < 40; ++i) {
+        fly(Vec3(1.4F, 0, 0), 0.02F);
+        EXPECT_NEAR(meant(), 7.0F, 1e-3F) << i;
+    }
+    fly(Vec3(1.4F, 0, 0), 0.02F, true);
+    EXPECT_NEAR(meant(), 7.0F, 1e-3F) << "taken over again";
+    fly(Vec3(1.4F, 0, 0), 2.0F);
+    EXPECT_NEAR(meant(), 1.4F, 1e-3F) << "the autopilot flies so for a second";
+}
+
 TEST_F(NominalKept, SteadyIsWithinHalfAMetrePerSecondForASecond)
 {
     limits.cruise_speed = 4.0F;
