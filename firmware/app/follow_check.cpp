@@ -63,7 +63,7 @@ bool FollowCheck::update(const Vec3& asked, const Vec3& velocity, const vehicle:
         is_proven_ = false;
         reference_ = command;
     }
-    answered_ += error.norm() - (command - velocity).norm();
+    answered_ = std::max(answered_ + error.norm() - (command - velocity).norm(), 0.0F);
     is_proven_ = is_proven_ || answered_ >= kTolerance;
     const float along = change.dot(error) / std::max(error.norm(), 1e-3F);
     const float towards = wing ? std::max(along, 0.0F) : along;  // rolling out of a turn goes the wrong way

@@ -150,7 +150,11 @@ void print_flights(std::ostream& out, const MatrixOptions& options, const std::v
                 matrix_scenario(cell.flyer, cell.behaviour, cell.meeting, options.from + i, conditions_of(options));
             const Record record = fly_in_process(scenario);
             out << scenario.name << ": meets at " << nominal_flight(cell.flyer, cell.behaviour, scenario.seed).meets_at
-                << " s, told at " << record.reported.front() << " s, least " << record.closest.surface << " m at "
+                << " s, told at " << record.reported.front() << " s, ";
+            for (const Turn& turn : scenario.threats.front().turns) {
+                out << "turns at " << turn.at << " s, ";
+            }
+            out << "least " << record.closest.surface << " m at "
                 << record.closest.time << " s, ends " << to_string(record.final_mode) << " at " << record.duration
                 << " s, goal at " << record.goal_at << " s\n";
             for (const Text& text : record.heard.texts) {
