@@ -78,12 +78,15 @@ bool is_held_by_bounds(const world::Situation& s, const Vec3& removed, const Vec
 }
 
 /// Near enough to the leg for control to be given back. Held at a bound of the airspace, the vehicle is as
-/// near to the leg as we may bring it.
+/// near to the leg as we may bring it. To measured motion nobody means to come back: beside it, as where wind keeps the
+/// vehicle off, control is given back once nothing has been in the way for a while.
 bool StateMachine::is_back(const Tick& tick) const noexcept
 {
+    constexpr Seconds kClearBeside = 5.0F;
     const float on_leg = settings_.on_leg;
+    const bool beside = tick.s.reference.measured && is_clear_for(tick, kClearBeside);
     const bool held = is_held_by_bounds(tick.s, tick.removed, tick.out.velocity, on_leg);
-    if (cross_track(tick.s) <= on_leg || tick.nominal.length <= on_leg || held) {
+    if (beside || cross_track(tick.s) <= on_leg || tick.nominal.length <= on_leg || held) {
         return true;
     }
     // A fixed wing above or below its leg needs no turn to follow it; past its end nothing is left of it.

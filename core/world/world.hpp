@@ -112,6 +112,7 @@ public:
     bool valid = false;
     float speed = 5.0F;       ///< along the route [m/s], > 0
     std::size_t segment = 0;  ///< of the route: the one being flown, or one before it
+    bool measured = false;    ///< motion that was measured: nobody means to come back to this very route
 
 private:
     path::RouteSegment leg_;

@@ -62,10 +62,11 @@ void MotionPath::extrapolate(const vehicle::VehicleState& own, float turn_rate,
     route_.clear();
     if (add_turn(own, turn_rate)) {
         reference_ = world::Reference(route_, speed);
-        return;
+    } else {
+        route_.clear();
+        reference_ = world::Reference({own.position, own.position + own.velocity * kAhead, speed});
     }
-    route_.clear();
-    reference_ = world::Reference({own.position, own.position + own.velocity * kAhead, speed});
+    reference_.measured = true;
 }
 
 void MotionPath::stay(const Vec3& place, const vehicle::VehicleLimits& limits) noexcept
@@ -76,11 +77,8 @@ void MotionPath::stay(const Vec3& place, const vehicle::VehicleLimits& limits) n
 
 void MotionPath::copy_from(const MotionPath& other) noexcept
 {
-    reference_ = other.reference_;
-    route_ = other.route_;
-    if (!route_.empty()) {
-        reference_ = world::Reference(route_, reference_.speed, reference_.segment);
-    }
+    route_.clear();
+    reference_ = other.reference_.moved_to(route_);
 }
 
 void MotionPath::progress_to(const Vec3& position) noexcept

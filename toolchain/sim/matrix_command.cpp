@@ -154,9 +154,9 @@ void print_flights(std::ostream& out, const MatrixOptions& options, const std::v
             for (const Turn& turn : scenario.threats.front().turns) {
                 out << "turns at " << turn.at << " s, ";
             }
-            out << "least " << record.closest.surface << " m at "
-                << record.closest.time << " s, ends " << to_string(record.final_mode) << " at " << record.duration
-                << " s, goal at " << record.goal_at << " s\n";
+            out << "least " << record.closest.surface << " m at " << record.closest.time << " s, ends "
+                << to_string(record.final_mode) << " at " << record.duration << " s, goal at " << record.goal_at
+                << " s\n";
             for (const Text& text : record.heard.texts) {
                 out << "  " << text.time << " s  " << text.severity << "  " << text.text << "\n";
             }

@@ -57,6 +57,7 @@ TEST_F(NominalPathsTest, WithoutALegTheMotionIsTheOnlyOne)
     fly(Vec3(3, 4, 0), 0.2F);
     EXPECT_EQ(paths.other(), nullptr);
     EXPECT_TRUE(paths.primary().valid);
+    EXPECT_TRUE(paths.primary().measured);
     EXPECT_LT((ahead(paths.primary(), 2.0F) - own.position - Vec3(6, 8, 0)).norm(), 1e-3F);
 }
 
@@ -64,7 +65,9 @@ TEST_F(NominalPathsTest, TheMotionStandsBesideABelievedLeg)
 {
     fly(Vec3(5, 0, 0), 2.0F);
     EXPECT_EQ(end_of(paths.primary()), leg.end);
+    EXPECT_FALSE(paths.primary().measured);
     ASSERT_NE(paths.other(), nullptr);
+    EXPECT_TRUE(paths.other()->measured);
     EXPECT_LT((ahead(*paths.other(), 2.0F) - own.position - Vec3(10, 0, 0)).norm(), 1e-3F);
 }
 
@@ -219,6 +222,7 @@ TEST_F(NominalPathsTest, OfAVehicleThatDriftsWhileItWaitsThePlaceIsKept)
     EXPECT_LT((start_of(paths.primary()) - at).norm(), 0.2F);
     EXPECT_EQ(end_of(paths.primary()), start_of(paths.primary()));
     EXPECT_FALSE(turns(paths.primary()));
+    EXPECT_FALSE(paths.primary().measured) << "to its place a vehicle comes back";
     EXPECT_EQ(paths.primary().speed, limits.cruise_speed);
 }
 
@@ -241,6 +245,7 @@ TEST_F(NominalPathsTest, ATurnIsKeptAsARoute)
     const Vec3 at = own.position;
     fly(Vec3(0, 0, 2), 3.0F, 0.0F, true);
     ASSERT_TRUE(turns(paths.primary()));
+    EXPECT_TRUE(paths.primary().measured);
     EXPECT_LT((paths.primary().route().at(0.0F).position - at).norm(), 0.2F);
 }
 

@@ -73,6 +73,27 @@ int rejoin(Flight& f, Supervisor<FakeMethod>& supervisor, int most)
     return steps;
 }
 
+/// Wind keeps the vehicle 3 m off. To its leg the autopilot would have to come back; to measured motion nobody means
+/// to.
+TEST(Rejoining, BesideMeasuredMotionControlIsGivenBackAfterFiveClearSeconds)
+{
+    for (const bool measured : {false, true}) {
+        Flight f;
+        f.scene.reference.measured = measured;
+        f.scene.own.position = Vec3(20, 3, 30);
+        FakeMethod method = never();
+        Supervisor supervisor(quick(), method);
+        Guidance g = f.update(supervisor, true);
+        int steps = 0;
+        for (; g.wants_control && steps < 400; ++steps) {
+            f.pass(g.velocity, 0.05F);
+            f.scene.own.position.y() = 3.0F;
+            g = f.update(supervisor, true);
+        }
+        EXPECT_NEAR(steps, measured ? 100 : 400, 1) << measured;
+    }
+}
+
 /// A leg below the floor is permitted: our command leads down to the floor, and when the path is clear control returns
 /// to the autopilot.
 TEST(Rejoining, AFloorAboveTheLegIsKept)
