@@ -28,6 +28,21 @@ TEST(Matrix, MissionsAreFlownToTheirGoalWithoutACoprocessor)
     }
 }
 
+TEST(Matrix, ATurnIsToldByTheFirstMessageAfterIt)
+{
+    for (const Conditions conditions : {Conditions::calm, Conditions::rough}) {
+        const Scenario turning = matrix_scenario(Flyer::arducopter, Behaviour::leg, Meeting::at_turn, 4, conditions);
+        const Record turned = fly_in_process(turning);
+        const double period = 1.0 / turning.traffic.rate;
+        EXPECT_LT(turned.reported.front(), turning.threats.front().turns.front().at);
+        EXPECT_GE(turned.course_reported.front(), turning.threats.front().turns.front().at);
+        EXPECT_LE(turned.course_reported.front(), turning.threats.front().turns.front().at + 3.0 * period);
+        const Record straight =
+            fly_in_process(matrix_scenario(Flyer::arducopter, Behaviour::leg, Meeting::head_on, 4, conditions));
+        EXPECT_EQ(straight.course_reported.front(), straight.reported.front());
+    }
+}
+
 // Half of the cells: the autopilots take turns.
 TEST(Matrix, EveryIntruderHitsAVehicleThatFliesOn)
 {

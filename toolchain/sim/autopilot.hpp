@@ -99,9 +99,16 @@ public:
     [[nodiscard]] Micros parameters_verified() const noexcept { return parameters_verified_; }
     [[nodiscard]] std::vector<std::string> parameters_missing() const;
     /// Time at which the first message that reports a threat was sent [us]; -1: not yet. Scan messages do not count.
-    [[nodiscard]] Micros reported(std::size_t threat) const { return reported_[threat]; }
+    [[nodiscard]] Micros reported(std::size_t threat) const { return told_[threat].first; }
+    /// The same of the first message since the threat's last turn.
+    [[nodiscard]] Micros course_reported(std::size_t threat) const { return told_[threat].course; }
 
 private:
+    struct Told {
+        Micros first = -1;
+        Micros course = -1;
+        std::size_t turns = 0;
+    };
     struct Wanted {
         std::string name;
         float value = 0.0F;
@@ -170,7 +177,7 @@ private:
     Heard heard_;
     std::vector<Wanted> wanted_;
     Micros parameters_verified_ = -1;
-    std::vector<Micros> reported_;
+    std::vector<Told> told_;  ///< by threat
 
     Mode mode_ = Mode::mission;
     Micros mode_since_ = 0;

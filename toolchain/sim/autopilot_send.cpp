@@ -295,7 +295,10 @@ void Autopilot::send_traffic()
         vehicle.ver_velocity = centi(seen.velocity.z());
         // PX4 forwards the ground station's reports under its own id.
         writer_.write(vehicle, scenario_.stack == Stack::px4 ? kAutopilot : kAdsbReceiver);
-        reported_[seen.threat] = reported_[seen.threat] < 0 ? world_.now() : reported_[seen.threat];
+        Told& told = told_[seen.threat];
+        told.first = told.first < 0 ? world_.now() : told.first;
+        told.course = told.course < 0 || seen.turns > told.turns ? world_.now() : told.course;
+        told.turns = std::max(told.turns, seen.turns);
     }
 }
 

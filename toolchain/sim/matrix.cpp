@@ -13,10 +13,9 @@ constexpr int kCriticalSeverity = 2;  // MAV_SEVERITY_CRITICAL
 /// The judge's manoeuvres continue for this long after the closest approach [s].
 constexpr double kBeyond = 3.0;
 
-/// Whether a judge's manoeuvre keeps the promise from the vehicle's state at the first sighting.
-bool is_avoidable(const Scenario& scenario, const Record& record)
+/// Whether a judge's manoeuvre keeps the promise from the vehicle's state at `reported`.
+bool is_avoidable(const Scenario& scenario, const Record& record, double reported)
 {
-    const double reported = record.reported.front();
     const auto sample =
         std::find_if(record.samples.begin(), record.samples.end(), [&](const Sample& s) { return s.time >= reported; });
     if (reported < 0.0 || sample == record.samples.end() || record.closest.time <= reported) {
@@ -30,13 +29,21 @@ bool is_avoidable(const Scenario& scenario, const Record& record)
     return judge_from(scenario, truth, sample->time, horizon, Trials::until_kept).avoidable;
 }
 
+/// The first message of the course on which the intruder came nearest: intruders turn once.
+double course_told(const Scenario& scenario, const Record& record)
+{
+    const std::vector<Turn>& turns = scenario.threats.front().turns;
+    const bool turned = !turns.empty() && turns.front().at < record.closest.time;
+    return turned ? record.course_reported.front() : record.reported.front();
+}
+
 bool is_worse_than_critical(const Text& text) { return text.severity <= kCriticalSeverity; }
 
 void add_flight(const Scenario& scenario, const Record& record, Cell& cell)
 {
     const bool hit = record.closest.surface < scenario.promise;
     const bool mission = is_mission(cell.behaviour);
-    const bool avoidable = hit && mission && is_avoidable(scenario, record);
+    const bool avoidable = hit && mission && is_avoidable(scenario, record, record.reported.front());
     const bool finished = mission && record.goal_at >= 0.0 && record.final_mode == Mode::mission;
     const auto warned_at = static_cast<double>(record.heard.first_warning) * 1e-6;
     const bool warned = record.heard.first_warning >= 0 && warned_at < record.closest.time;
@@ -44,6 +51,7 @@ void add_flight(const Scenario& scenario, const Record& record, Cell& cell)
     ++cell.flights;
     cell.hits += hit ? 1U : 0U;
     cell.avoidable += avoidable ? 1U : 0U;
+    cell.foreseeable += avoidable && is_avoidable(scenario, record, course_told(scenario, record)) ? 1U : 0U;
     cell.unwarned += hit && !warned ? 1U : 0U;
     cell.taken_over += record.takeovers > 0 ? 1U : 0U;
     cell.given_back += record.given_back ? 1U : 0U;

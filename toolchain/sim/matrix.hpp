@@ -83,6 +83,8 @@ struct Cell {
     unsigned hits = 0;               ///< flights with a separation below the promise
     unsigned avoidable = 0;          ///< hits in the mission mode for which the judge has a manoeuvre at the first
                                      ///< sighting
+    unsigned foreseeable = 0;        ///< of these, hits for which it has one at the first sighting since the
+                                     ///< intruder's last turn too: before, nobody could know where it flies
     unsigned unwarned = 0;           ///< hits without a preceding COLLISION
     unsigned taken_over = 0;         ///< flights with a take-over
     unsigned given_back = 0;         ///< take-overs with control given back

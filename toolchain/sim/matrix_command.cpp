@@ -65,6 +65,7 @@ void add(const Cell& cell, Cell& sum)
     sum.flights += cell.flights;
     sum.hits += cell.hits;
     sum.avoidable += cell.avoidable;
+    sum.foreseeable += cell.foreseeable;
     sum.unwarned += cell.unwarned;
     sum.taken_over += cell.taken_over;
     sum.given_back += cell.given_back;
@@ -204,8 +205,9 @@ int run_matrix(const MatrixOptions& options, std::ostream& out)
         missions += is_mission(cell.behaviour) ? cell.flights : 0U;
     }
     out << cells.size() << " cells, " << sum.flights << " flights: " << sum.hits << " hits, " << sum.avoidable
-        << " of them avoidable, " << sum.finished << " of " << missions << " missions finished, " << sum.critical_texts
-        << " critical texts of the autopilot, " << sum.broken_rules << " flights with a broken rule\n";
+        << " of them avoidable, " << sum.foreseeable << " of these since the intruder's last turn, " << sum.finished
+        << " of " << missions << " missions finished, " << sum.critical_texts << " critical texts of the autopilot, "
+        << sum.broken_rules << " flights with a broken rule\n";
     return sum.avoidable == 0 && sum.critical_texts == 0 && sum.broken_rules == 0 ? 0 : 1;
 }
 

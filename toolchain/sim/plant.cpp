@@ -162,6 +162,7 @@ Record Plant::record(const std::vector<double>& scanned) const
     for (std::size_t i = 0; i < scenario_.threats.size(); ++i) {
         record.appeared.push_back(world_.appeared(i) < 0 ? -1.0 : to_seconds(world_.appeared(i)));
         const double by_lidar = i < scanned.size() ? scanned[i] : -1.0;
+        record.course_reported.push_back(to_seconds(autopilot_.course_reported(i)));
         record.reported.push_back(autopilot_.reported(i) < 0 ? by_lidar : to_seconds(autopilot_.reported(i)));
     }
     record.sides = sides_.counts(record.reported);

@@ -108,8 +108,10 @@ struct Record {
     std::vector<double> reported;  ///< time at which the first message of each threat left the autopilot's end, or the
                                    ///< first LiDAR scan with a return from it arrived; of a level scan: never;
                                    ///< negative: never [s]
-    SideCounts sides;              ///< as flown, conflict by conflict
-    SideCounts chosen_sides;       ///< as chosen; in process alone
+    std::vector<double> course_reported;  ///< time at which the first message since the last turn of each threat left;
+                                          ///< negative: never [s]
+    SideCounts sides;                     ///< as flown, conflict by conflict
+    SideCounts chosen_sides;              ///< as chosen; in process alone
     std::vector<Sample> samples;
     std::optional<Inside> inside;
 };

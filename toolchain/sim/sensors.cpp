@@ -94,6 +94,8 @@ void TrafficReceiver::sight(std::size_t i, Channel& channel)
         seen.position = rounded_to(seen.position, Vec(kCell, kCell, kAltitudeStep));
         seen.velocity = rounded_to(seen.velocity, Vec(kSpeedStep, kSpeedStep, kClimbStep));
     }
+    seen.turns = static_cast<std::size_t>(std::count_if(threat.turns.begin(), threat.turns.end(),
+                                                        [&](const Turn& turn) { return turn.at <= world_.seconds(); }));
     channel.under_way.push_back(seen);
 }
 

@@ -17,6 +17,7 @@ struct Sighting {
     Micros arrives = 0;
     Vec position = Vec::Zero();
     Vec velocity = Vec::Zero();
+    std::size_t turns = 0;  ///< that the threat had made by then
 };
 
 /// Detects the world's threats that are sensed as traffic or point obstacles.
