@@ -28,7 +28,7 @@ TEST(Matrix, MissionsAreFlownToTheirGoalWithoutACoprocessor)
     }
 }
 
-TEST(Matrix, ATurnIsToldByTheFirstMessageAfterIt)
+TEST(Matrix, ATurnIsReportedByTheFirstMessageAfterIt)
 {
     for (const Conditions conditions : {Conditions::calm, Conditions::rough}) {
         const Scenario turning = matrix_scenario(Flyer::arducopter, Behaviour::leg, Meeting::at_turn, 4, conditions);

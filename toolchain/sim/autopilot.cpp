@@ -39,7 +39,7 @@ std::unique_ptr<ItemPilot> pilot_of_items(const Scenario& scenario)
 Autopilot::Autopilot(World& world)
     : world_(world), scenario_(world.scenario()), mission_(scenario_), plane_(scenario_.vehicle),
       items_(pilot_of_items(scenario_)), estimate_(scenario_.own, scenario_.seed), receiver_(world),
-      writer_(scenario_.system), server_(scenario_.stack, writer_), told_(scenario_.threats.size())
+      writer_(scenario_.system), server_(scenario_.stack, writer_), reported_(scenario_.threats.size())
 {
     if (scenario_.flight) {
         mode_ = scenario_.flight->mode;

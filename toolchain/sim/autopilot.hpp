@@ -99,12 +99,12 @@ public:
     [[nodiscard]] Micros parameters_verified() const noexcept { return parameters_verified_; }
     [[nodiscard]] std::vector<std::string> parameters_missing() const;
     /// Time at which the first message that reports a threat was sent [us]; -1: not yet. Scan messages do not count.
-    [[nodiscard]] Micros reported(std::size_t threat) const { return told_[threat].first; }
+    [[nodiscard]] Micros reported(std::size_t threat) const { return reported_[threat].first; }
     /// The same of the first message since the threat's last turn.
-    [[nodiscard]] Micros course_reported(std::size_t threat) const { return told_[threat].course; }
+    [[nodiscard]] Micros course_reported(std::size_t threat) const { return reported_[threat].course; }
 
 private:
-    struct Told {
+    struct Reported {
         Micros first = -1;
         Micros course = -1;
         std::size_t turns = 0;
@@ -177,7 +177,7 @@ private:
     Heard heard_;
     std::vector<Wanted> wanted_;
     Micros parameters_verified_ = -1;
-    std::vector<Told> told_;  ///< by threat
+    std::vector<Reported> reported_;  ///< by threat
 
     Mode mode_ = Mode::mission;
     Micros mode_since_ = 0;

@@ -295,10 +295,10 @@ void Autopilot::send_traffic()
         vehicle.ver_velocity = centi(seen.velocity.z());
         // PX4 forwards the ground station's reports under its own id.
         writer_.write(vehicle, scenario_.stack == Stack::px4 ? kAutopilot : kAdsbReceiver);
-        Told& told = told_[seen.threat];
-        told.first = told.first < 0 ? world_.now() : told.first;
-        told.course = told.course < 0 || seen.turns > told.turns ? world_.now() : told.course;
-        told.turns = std::max(told.turns, seen.turns);
+        Reported& reported = reported_[seen.threat];
+        reported.first = reported.first < 0 ? world_.now() : reported.first;
+        reported.course = reported.course < 0 || seen.turns > reported.turns ? world_.now() : reported.course;
+        reported.turns = std::max(reported.turns, seen.turns);
     }
 }
 

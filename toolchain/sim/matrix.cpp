@@ -30,7 +30,7 @@ bool is_avoidable(const Scenario& scenario, const Record& record, double reporte
 }
 
 /// The first message of the course on which the intruder came nearest: intruders turn once.
-double course_told(const Scenario& scenario, const Record& record)
+double course_reported_at(const Scenario& scenario, const Record& record)
 {
     const std::vector<Turn>& turns = scenario.threats.front().turns;
     const bool turned = !turns.empty() && turns.front().at < record.closest.time;
@@ -51,7 +51,7 @@ void add_flight(const Scenario& scenario, const Record& record, Cell& cell)
     ++cell.flights;
     cell.hits += hit ? 1U : 0U;
     cell.avoidable += avoidable ? 1U : 0U;
-    cell.foreseeable += avoidable && is_avoidable(scenario, record, course_told(scenario, record)) ? 1U : 0U;
+    cell.foreseeable += avoidable && is_avoidable(scenario, record, course_reported_at(scenario, record)) ? 1U : 0U;
     cell.unwarned += hit && !warned ? 1U : 0U;
     cell.taken_over += record.takeovers > 0 ? 1U : 0U;
     cell.given_back += record.given_back ? 1U : 0U;
