@@ -50,7 +50,7 @@ bool FollowCheck::update(const Vec3& asked, const Vec3& velocity, const vehicle:
         begun_ = is_finite(velocity) && is_finite(command);
         commanded_ = 0.0F;
         reference_ = command;
-        answered_ = 0.0F;
+        start_ = velocity;
         return false;
     }
     commanded_ += dt;
@@ -59,14 +59,13 @@ bool FollowCheck::update(const Vec3& asked, const Vec3& velocity, const vehicle:
     if ((command - reference_).norm() > kTolerance) {
         // What the command before asked for still goes on for a while.
         missing_ = is_proven_ ? -expected * kAllowance : missing_;
-        answered_ = is_proven_ ? 0.0F : answered_;
+        start_ = is_proven_ ? velocity : start_;
         is_proven_ = false;
         reference_ = command;
     }
-    answered_ = std::max(answered_ + error.norm() - (command - velocity).norm(), 0.0F);
-    is_proven_ = is_proven_ || answered_ >= kTolerance;
-    const float along = change.dot(error) / std::max(error.norm(), 1e-3F);
-    const float towards = wing ? std::max(along, 0.0F) : along;  // rolling out of a turn goes the wrong way
+    is_proven_ = is_proven_ || (command - start_).norm() - (command - velocity).norm() >= kTolerance;
+    const float answered = change.dot(error) / std::max(error.norm(), 1e-3F);
+    const float towards = wing ? std::max(answered, 0.0F) : answered;  // rolling out of a turn goes the wrong way
     if (is_followed(command, velocity)) {
         missing_ = std::max(missing_ - expected * dt, std::min(missing_, 0.0F));
         return false;

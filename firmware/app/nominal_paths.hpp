@@ -60,7 +60,7 @@ private:
     MotionPath live_;
     MotionPath kept_;
     bool in_control_ = false;
-    TimePoint given_back_;
+    TimePoint given_back_;   ///< when control ended last: what was steady before was our own speed
     bool on_motion_ = true;  ///< the primary one
     bool was_on_motion_ = false;
     bool outdated_ = false;  ///< what is kept: the frame has jumped

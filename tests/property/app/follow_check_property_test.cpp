@@ -214,6 +214,39 @@ TEST(FollowCheckLaw, AVehicleThatIgnoresItsCommandsIsFoundWithinASecondAndAHalf)
     std::printf("[ follow    ] found after %.2f s at most\n", static_cast<double>(longest));
 }
 
+/// Commands that jump with each noisy report give no proof by themselves, nor do gusts about a velocity that is kept.
+TEST(FollowCheckLaw, AVehicleThatIgnoresJumpingCommandsInGustsIsFoundWithinTenSeconds)
+{
+    const std::uint64_t cases = number_of("JINK_CASES", 2000);
+    const std::uint64_t seed = number_of("JINK_SEED", 20261130);
+    std::uint64_t late = 0;
+    for (std::uint64_t i = 0; i < cases; ++i) {
+        Random random(seed + i);
+        const auto every = 3 + random.below(4);  // ticks between velocities
+        const float mean = random.uniform(2.4F, 4.2F);
+        const float gusts = random.uniform(0.0F, 0.8F);  // [m/s], of a correlation time of 1 s
+        FollowCheck check;
+        Vec3 command = Vec3::Zero();
+        Vec3 gust = Vec3::Zero();
+        float found = -1.0F;
+        for (std::uint64_t tick = 0; tick < 500 && found < 0.0F; ++tick) {
+            if (tick % every == 0) {
+                const float angle = random.uniform(mean - 0.4F, mean + 0.4F);
+                command = Vec3(5.0F * std::cos(angle), 5.0F * std::sin(angle), -1.0F);
+            }
+            const Vec3 push(random.normal(), random.normal(), random.normal());
+            gust += kStep * -gust + gusts * std::sqrt(kStep) * push;
+            const Vec3 noise(random.normal(), random.normal(), random.normal());
+            const TimePoint now{1'000'000 + static_cast<std::int64_t>(tick) * 20'000};
+            const bool alarm = check.update(command, Vec3(3.2F, 3.8F, 0.0F) + gust + 0.1F * noise, {}, now);
+            found = alarm ? static_cast<float>(tick) * kStep : found;
+        }
+        ASSERT_GE(found, 0.5F) << "JINK_CASES=1 JINK_SEED=" << seed + i;
+        late += found > 1.5F ? 1U : 0U;
+    }
+    EXPECT_LE(late * 10, cases) << "nine of ten within a second and a half";
+}
+
 /// A plane in double, independent of core and of the simulator: points reach it twice a second, it begins to roll
 /// after a dead time, banks with a lag and turns its course by an L1 law; its speed is its own.
 struct Wing {
