@@ -10,6 +10,8 @@ import subprocess
 import threading
 
 nice = ["nice", "-n", "19"]  # --nice
+# What firmware/ is compiled with besides; the numbers mean nothing here.
+VERSION = ['JINK_VERSION="0.0.0"', *(f"JINK_VERSION_{part}=0" for part in ("MAJOR", "MINOR", "PATCH"))]
 BYTES = 4 << 30  # of address space: a mutant that grows without bound counts as a crash
 
 
@@ -27,7 +29,7 @@ def build(repository, root, folder, mutants, needed, programs, jobs):
                  f"-DJINK_ROOT={root}", f"-DJINK_SOURCES={folder / 'source'}", f"-DJINK_MUTANTS={mutants}",
                  f"-DJINK_FOLDERS={';'.join(needed)}",
                  f"-DJINK_PROGRAMS={';'.join(programs)}", f"-DJINK_TESTS={';'.join(map(str, programs.values()))}",
-                 "-DCMAKE_BUILD_TYPE=Release"]
+                 "-DCMAKE_BUILD_TYPE=Release", f"-DJINK_DEFINITIONS={';'.join(VERSION)}"]
     for command in (configure, ["cmake", "--build", out, "--parallel", str(jobs)]):
         done = subprocess.run([*nice, *command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         if done.returncode != 0:
