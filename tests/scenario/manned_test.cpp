@@ -172,6 +172,22 @@ TEST(Manned, TheTrackMeetsTheMissionWhereItIsSaidTo)
     EXPECT_NEAR(weights / static_cast<double>(kCount), 1.0, 1e-9);
 }
 
+/// Two that begin in each other's volume have met already: nobody could have kept them apart.
+TEST(Manned, EncountersBeginWellClear)
+{
+    const std::vector<fs::path> files = models();
+    SKIP_WITHOUT_MODELS(files)
+    for (const fs::path& file : files) {
+        const EncounterModel model = EncounterModel::load(file.string());
+        for (std::uint64_t seed = 0; seed < 60; ++seed) {
+            const Scenario s = manned_encounter(model, MannedSensor::adsb, seed).scenario;
+            const Vec gap = s.threats[0].position_at(0.0) - s.start_position;
+            EXPECT_TRUE(gap.head<2>().norm() >= kWellClearVolume.radius || std::abs(gap.z()) >= kWellClearVolume.height)
+                << file << ", seed " << seed << ": " << gap.head<2>().norm() << " m, " << gap.z() << " m higher";
+        }
+    }
+}
+
 /// Of the summary: by hand.
 TEST(Manned, RatiosAreWeightedAndZeroIsNotCertain)
 {

@@ -10,8 +10,8 @@ import subprocess
 import threading
 
 nice = ["nice", "-n", "19"]  # --nice
-# What firmware/ is compiled with besides; the numbers mean nothing here.
-VERSION = ['JINK_VERSION="0.0.0"', *(f"JINK_VERSION_{part}=0" for part in ("MAJOR", "MINOR", "PATCH"))]
+# What firmware/ and its tests are compiled with besides; the numbers mean nothing here.
+VERSION = ['JINK_VERSION="0.0.0"', 'JINK_TEST_VERSION="0.0.0"', *(f"JINK_VERSION_{part}=0" for part in ("MAJOR", "MINOR", "PATCH"))]
 BYTES = 4 << 30  # of address space: a mutant that grows without bound counts as a crash
 
 

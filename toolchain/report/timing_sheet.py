@@ -47,7 +47,7 @@ def _board(kept, memory, board, page):
     yield page.row("clock", "verdict", "bound of a step", "its mandatory part", "worst step found", "bound with all interrupts")
     yield page.row(*["---"] * 6)
     for clock, v in clocks.items():
-        fits = 100 * v["step"] <= page.SHARE * v["tick"] and 100 * v["mandatory"] <= page.MANDATORY * v["tick"] and v["step"] + all_load <= v["tick"]
+        fits = page.does_fit(v) and v["step"] + all_load <= v["tick"]
         yield page.row(f"{clock} MHz", "**fits**" if fits else "**does not fit**", *(f"{v[n + '_percent']:.1f} % of the tick" for n in ("step", "mandatory", "worst")),
                        f"{100 * (v['step'] + all_load) / v['tick']:.1f} %")
     yield ""

@@ -185,22 +185,24 @@ MannedEncounter manned_encounter(const EncounterModel& model, MannedSensor senso
     const Vec gap = draw_between(random, outer, inner);  // from the aircraft to the vehicle
     Threat aircraft;
     Vec meeting = Vec::Zero();
+    s.vehicle.cruise = uniform(random, 5.0, 15.0);
+    s.start_velocity = Vec(s.vehicle.cruise, 0.0, 0.0);
     bool found = false;
     for (int i = 0; i < kTries && !found; ++i) {
         const ModelTrack track = model.sample(random, kTrackSeconds);
         aircraft = flown_track(track, uniform(random, -std::numbers::pi, std::numbers::pi));
         meeting = aircraft.position_at(kMeetAfter) + gap;
-        found = meeting.z() >= kLowest && meeting.z() <= kHighest;
+        const Vec start = meeting - kMeetAfter * s.start_velocity;
+        found = meeting.z() >= kLowest && meeting.z() <= kHighest &&
+                !is_inside(kWellClearVolume, aircraft.position_at(0.0) - start);
     }
     if (!found) {
-        throw std::runtime_error("no track of this model is low enough");
+        throw std::runtime_error("no track of this model is low enough and begins well clear");
     }
     s.name = "manned_" + std::to_string(seed);
     s.title = "a manned aircraft, seed " + std::to_string(seed);
     s.seed = seed;
     s.stack = random.below(2) == 0 ? Stack::ardupilot : Stack::px4;
-    s.vehicle.cruise = uniform(random, 5.0, 15.0);
-    s.start_velocity = Vec(s.vehicle.cruise, 0.0, 0.0);
     s.start_position = Vec(0.0, 0.0, meeting.z());
     s.duration = static_cast<double>(kTrackSeconds);
     s.mission = {s.start_position, s.start_position + 2.0 * s.duration * s.start_velocity};

@@ -41,7 +41,7 @@ struct MannedEncounter {
 };
 
 /// The same seed gives the same encounter. The vehicle flies a straight leg at 5 to 15 m/s, 40 to 250 m high; the
-/// aircraft's track is drawn anew until its height allows that.
+/// aircraft's track is drawn anew until its height allows that and the two begin well clear of each other.
 /// @throws std::runtime_error where none of 10 000 tracks does
 [[nodiscard]] MannedEncounter manned_encounter(const EncounterModel& model, MannedSensor sensor, std::uint64_t seed);
 
