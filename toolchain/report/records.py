@@ -244,13 +244,13 @@ class Bench:
         return {line.split()[0]: dict(zip(("instructions", "units", "slice"), map(int, line.split()[1:]))) for line in lines}
 
     def hunt_steps(self, target, scene, seeds, workers):
-        """The most expensive step of many crowds, (instructions, crowd, step), and the number of all steps."""
+        """The most expensive step of many crowds, (its answer, crowd, step), and the number of all steps."""
         def of_crowd(seed):
             answers = self.steps(target, scene, seed)
-            return max((a.instructions, seed, i) for i, a in enumerate(answers)), len(answers)
+            return max(((a, seed, i) for i, a in enumerate(answers)), key=lambda item: item[0].instructions), len(answers)
         with concurrent.futures.ThreadPoolExecutor(workers) as pool:
             found = list(pool.map(of_crowd, seeds))
-        return max(most for most, _ in found), sum(count for _, count in found)
+        return max((most for most, _ in found), key=lambda item: (item[0].instructions, *item[1:])), sum(count for _, count in found)
 
 
 def write_crowd(folder, scene, target, crowd, how):
@@ -259,11 +259,11 @@ def write_crowd(folder, scene, target, crowd, how):
     return path
 
 
-def note_hunt(folder, scene, target, evaluations, command, most):
-    """Keeps of each scene and target the hunt with most evaluations, whether it beat the record or not."""
+def note_hunt(folder, scene, target, evaluations, command, answer):
+    """Keeps of each scene and target the hunt with most evaluations, whether it beat the record or not, and what its costliest case took."""
     path = pathlib.Path(folder) / "hunts.json"
     kept = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
     name = f"{scene}.{target}"
     if evaluations >= kept.get(name, {}).get("evaluations", 0):
-        kept[name] = {"evaluations": evaluations, "most": most, "command": command}
+        kept[name] = {"evaluations": evaluations, "most": answer.instructions, "work": answer.work, "command": command}
         path.write_text(compact_json(dict(sorted(kept.items()))), encoding="utf-8")

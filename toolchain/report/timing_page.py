@@ -133,7 +133,7 @@ def units_of(kept, target):
 
 
 def hunts_of(target):
-    """What the longest hunts on a target found; with `work`, the units of the case, where it is dearer by the unit than a record may be."""
+    """The longest hunts on a target. Older ones do not say the `work` of what they found."""
     return [h for n, h in (json.loads(HUNTS.read_text(encoding="utf-8")) if HUNTS.exists() else {}).items() if n.endswith("." + target)]
 
 
