@@ -69,6 +69,13 @@ inline constexpr std::uint32_t kObjectivePoint = 1;  ///< and each of its points
 inline constexpr std::uint32_t kObjectiveArc = 2;    ///< or arc
 
 // --- candidates (core/geometric) ---
+inline constexpr std::uint32_t kPlan = 12;           ///< a plan, before anything else
+inline constexpr std::uint32_t kThreatValid = 2;     ///< threat whose numbers are checked, before it is planned for
+inline constexpr std::uint32_t kAttempt = 24;        ///< an attempt, before its threats and its candidates
+inline constexpr std::size_t kThreatsListed = 8;     ///< and so many threats, gone through for those that move
+inline constexpr std::uint32_t kPlanned = 1;         ///< and a candidate, before it is made
+inline constexpr std::uint32_t kPlaneOffsets = 8;    ///< and a family's offsets in a plane
+inline constexpr std::uint32_t kMainExtent = 3;      ///< and each extent of the main threat
 inline constexpr std::uint32_t kCandidatePoint = 1;  ///< of a curve that is made, each waypoint
 inline constexpr std::uint32_t kRoutePoint = 4;      ///< more, where it follows a route
 inline constexpr std::uint32_t kRoute = 100;         ///< checks of an attempt along a route before its curves
@@ -80,16 +87,17 @@ constexpr std::uint32_t closeness_units(std::size_t points, std::size_t moving) 
 }
 inline constexpr std::uint32_t kTableLookUp = 8;      ///< length, duration and smoothness of a curve out of the tables
 inline constexpr std::uint32_t kTableEnergy = 24;     ///< its energy, with the limits binding on all of it
-inline constexpr std::uint32_t kCollected = 1;        ///< threat or obstacle whose distance from the reach is checked
+inline constexpr std::uint32_t kCollected = 3;        ///< threat or obstacle whose distance from the reach is checked
 inline constexpr std::uint32_t kItem = 4;             ///< sphere that a curve is checked against, all of it far
 inline constexpr std::uint32_t kFarItem = 2;          ///< and one whose bounds are out of reach of the whole curve
 inline constexpr std::uint32_t kSphereCheck = 2;      ///< a closer check of a segment against a sphere
 inline constexpr std::uint32_t kSphereCheckPart = 1;  ///< and each part of a segment that is checked by itself
 inline constexpr std::uint32_t kSphereContact = 7;    ///< and an exact contact test
 inline constexpr std::uint32_t kSolidCheck = 3;       ///< solid that a curve is checked against, all of it far
+inline constexpr std::uint32_t kSolidNear = 8;        ///< and one whose bounds are within reach: its planes
 inline constexpr std::uint32_t kSolidSegment = 1;     ///< and each segment of one that may be near
 inline constexpr std::uint32_t kSolidPlanes = 3;      ///< and a closer check of such a segment, before any query
-/// All points of a curve against a solid's planes.
+/// All points of a curve against the airspace's bounds, or a solid's planes.
 constexpr std::uint32_t points_units(std::size_t points) noexcept { return static_cast<std::uint32_t>(points / 3 + 1); }
 /// Factor by which a solid lengthens the checks of an attempt: the same number of turns on every target.
 inline constexpr std::uint32_t kSolidShares = kSoftDoubles ? 28 : 1;
@@ -97,16 +105,24 @@ inline constexpr std::uint32_t kCandidatePart = 3;  ///< part of a candidate's f
 inline constexpr std::uint32_t kCandidateStep = 1;  ///< and each of its points
 
 // --- reach sets (core/reach) ---
-inline constexpr std::uint32_t kReachMark = 150;  ///< a set that is placed: its cells' spheres
-inline constexpr std::uint32_t kReachDepths = 2;  ///< and sixteen of its nodes
-inline constexpr std::uint32_t kReachCells = 2;   ///< and four of its cells and a threat that may come near to them
-inline constexpr std::uint32_t kReachNode = 2;    ///< node that is checked
+inline constexpr std::uint32_t kReachMark = 150;     ///< a set that is placed: its cells' spheres
+inline constexpr std::uint32_t kReachDepths = 2;     ///< and sixteen of its nodes
+inline constexpr std::uint32_t kReachCells = 2;      ///< and four of its cells and a threat that may come near to them
+inline constexpr std::uint32_t kReachSolidCell = 1;  ///< and one of its cells and a solid
+inline constexpr std::uint32_t kReachThreat = 2;     ///< threat that may be within a set's reach
+inline constexpr std::uint32_t kReachNode = 3;       ///< node that is checked
 inline constexpr std::uint32_t kReachQuickRejects = 1;  ///< and three threats that may come near, each a quick reject
-inline constexpr std::uint32_t kReachCheck = 2;         ///< and a sphere near it
+inline constexpr std::uint32_t kReachCheck = 3;         ///< and a sphere near it
+inline constexpr std::uint32_t kReachContact = 9;       ///< and an exact contact test
 inline constexpr std::uint32_t kReachSolid = 6;         ///< or any other solid, or a cylinder
-inline constexpr std::uint32_t kReachEntries = 2;       ///< eight entries of footprints, when trajectories are chosen
-inline constexpr std::uint32_t kReachPath = 30;         ///< trajectory that is made a path, with a stop at its end
-inline constexpr std::uint32_t kReachScanCell = 20;     ///< cell of a set or of a scan, when one is laid over the other
+inline constexpr std::uint32_t kReachEntries = 2;       ///< eight entries of footprints, when a set is evaluated
+/// When a trajectory is chosen, for each run that is tried.
+constexpr std::uint32_t reach_choice_units(std::size_t entries, std::size_t cells) noexcept
+{
+    return static_cast<std::uint32_t>(entries / 8 + cells / 4 + 4);
+}
+inline constexpr std::uint32_t kReachPath = 30;      ///< trajectory that is made a path, with a stop at its end
+inline constexpr std::uint32_t kReachScanCell = 20;  ///< cell of a set or of a scan, when one is laid over the other
 
 // --- checks of tables in the background (core/reach/vehicle_sets) ---
 inline constexpr std::uint32_t kTableElements = 10;  ///< 32 numbers of a table that is checked

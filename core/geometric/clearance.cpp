@@ -214,6 +214,9 @@ bool Clearance::touches(const View& view, const Item& item, WorkBudget& budget) 
 
 Verdict Clearance::check(const Curve& curve, WorkBudget& budget, Part part) const noexcept
 {
+    if (!budget.spend(units::points_units(curve.points))) {
+        return {CandidateStatus::not_evaluated, {}};
+    }
     if (part != Part::deferred) {
         if (const ThreatKind bound = left_airspace(curve); bound != ThreatKind::none) {
             return {CandidateStatus::hits_airspace, {bound, 0}};

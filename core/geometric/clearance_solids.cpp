@@ -92,13 +92,14 @@ bool Clearance::touches(const View& view, const Solid& solid, WorkBudget& budget
     if (apart(centre, centre, view.extent.low, view.extent.high, half_, bound)) {
         return false;
     }
+    const std::uint32_t hull = units::hull_units(solid.shape.vertices.size());
+    if (!budget.spend(units::kSolidNear + hull)) {
+        return true;
+    }
     const Planes planes(solid.shape, centre);
     const Vec3 middle = view.extent.middle();
     if (planes.part(middle, middle, half_ + view.extent.half(), largest)) {
         return false;
-    }
-    if (!budget.spend(units::kSolidCheck)) {
-        return true;
     }
     if (touches_at_its_top(view, planes, solid)) {
         return true;
@@ -121,7 +122,7 @@ bool Clearance::touches(const View& view, const Solid& solid, WorkBudget& budget
             ++i;
             continue;
         }
-        if (!budget.spend(units::kSolidPlanes)) {
+        if (!budget.spend(units::kSolidPlanes + hull)) {
             return true;
         }
         if (planes.part(a, b, half_, solid.growth.at(view.curve.t[i + 1]))) {

@@ -48,6 +48,7 @@ void Run::build(const CandidateShape& shape) noexcept
 /// `seen`: the problem itself, or what it looks like at the collision point.
 void Run::generate_curves(Family family, const Problem& seen) noexcept
 {
+    const bool is_straight = &seen == &problem_;
     unit_[static_cast<std::size_t>(family)] =
         make_unit_curve(family, settings_.waypoints, problem_.ends_at_top ? 1.0F : curve_length_x(family, 1.0F));
     const int planes = settings_.extra_planes + 1;
@@ -58,9 +59,9 @@ void Run::generate_curves(Family family, const Problem& seen) noexcept
         const Vec3 side = side_of(candidate.shape);
         candidate.sin_alpha = std::min(std::sqrt(along_.z() * along_.z() + side.z() * side.z()), 1.0F);
         Offsets offsets;
-        const bool is_straight = &seen == &problem_;
         offsets_of_plane(seen, settings_, family, limits_.half_extents,
-                         is_straight ? side : plane_direction(seen.frame, candidate.shape.plane), offsets);
+                         is_straight ? side : plane_direction(seen.frame, candidate.shape.plane),
+                         extents_[static_cast<std::size_t>(i)], offsets);
         for (const float offset : offsets) {
             candidate.shape.offset = offset;
             result_.candidates.unchecked_push_back(candidate);  // is_valid(Settings) has counted them
@@ -84,6 +85,14 @@ void Run::generate_waits() noexcept
 
 void Run::generate_curves(const Problem& seen) noexcept
 {
+    if (settings_.offset_rule == OffsetRule::clearing) {
+        const MainExtent along = extent_along(seen);
+        const int planes = settings_.extra_planes + 1;
+        for (int i = 0; i < planes; ++i) {
+            extents_[static_cast<std::size_t>(i)] =
+                with_sides(seen, plane_direction(seen.frame, angle_of(i, planes)), along);
+        }
+    }
     for (const Family family : kCurves) {
         if (settings_.*flag_of(family)) {
             generate_curves(family, seen);
@@ -138,6 +147,9 @@ void Run::prepare() noexcept
     clearance_.collect(reach, longest, budget_);
     if (settings_.security == SecurityMode::swept || settings_.closeness == cost::ClosenessMethod::swept) {
         for (const Candidate& candidate : result_.candidates) {
+            if (!budget_.spend(units_of_curve())) {
+                return;
+            }
             build(candidate.shape);
             longest_ = std::max(longest_, curve_.duration());
         }

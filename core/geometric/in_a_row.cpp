@@ -6,6 +6,7 @@
 #include <new>
 
 #include "core/base/work_units.hpp"
+#include "core/geometric/attempt.hpp"
 #include "core/geometric/flown.hpp"
 #include "core/geometry/sweep.hpp"
 #include "core/world/obstacle_distance.hpp"
@@ -198,7 +199,7 @@ PlanStatus solve_in_a_row(const Problem& problem, const Settings& settings, cons
     PlanStatus status = PlanStatus::none_available;
     bool cut_short = false;
     const auto solve_part = [&] {
-        status = solve(part_of, with, limits, airframe, budget, workspace, result);
+        status = solve_valid(part_of, with, limits, airframe, budget, workspace, result);
         cut_short = cut_short || result.cut_short;
         result.cut_short = cut_short;
     };

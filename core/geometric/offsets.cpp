@@ -52,36 +52,48 @@ float main_extent(const Problem& problem, const Vec3& direction) noexcept
 
 }  // namespace
 
-float smallest_clearing_offset(const Problem& problem, const Settings& settings, Family family,
-                               const Vec3& half_extents, const Vec3& side) noexcept
+MainExtent extent_along(const Problem& problem) noexcept
 {
+    // A sphere falls away behind its top as the curve does; points of it say which falls first. Other solids: their
+    // ends.
+    if (problem.main_shape == nullptr) {
+        return {problem.main_radius, problem.main_radius};
+    }
     const Vec3 along = problem.frame.axes.col(0);
+    return {std::max(main_extent(problem, -along), 0.0F), std::max(main_extent(problem, along), 0.0F)};
+}
+
+MainExtent with_sides(const Problem& problem, const Vec3& side, MainExtent extent) noexcept
+{
+    extent.left = main_extent(problem, side);
+    extent.right = main_extent(problem, -side);
+    return extent;
+}
+
+float smallest_clearing_offset(const Problem& problem, const Settings& settings, Family family,
+                               const Vec3& half_extents, const Vec3& side, const MainExtent& extent,
+                               float aside) noexcept
+{
     const float box_aside = half_extents.dot(side.cwiseAbs());
-    const float box_along = half_extents.dot(along.cwiseAbs());
-    const float extent = main_extent(problem, side);
-    float smallest = std::max(kMinOffset, extent + box_aside + kClearingSlack);
+    const float box_along = half_extents.dot(problem.frame.axes.col(0).cwiseAbs());
+    float smallest = std::max(kMinOffset, aside + box_aside + kClearingSlack);
     // The chords of the curve lie inside of it, by y'' / 8 of a step at its top.
     const float step = curve_length_x(family, 1.0F) / static_cast<float>(settings.waypoints - 1);
     const float chord = 0.75F * step * step;
-    // A sphere falls away behind its top as the curve does; points of it say which falls first. Other solids: their
-    // ends.
     const bool sphere = problem.main_shape == nullptr;
-    const float before = sphere ? problem.main_radius : std::max(main_extent(problem, -along), 0.0F);
-    const float behind = sphere ? problem.main_radius : std::max(main_extent(problem, along), 0.0F);
     for (const float part : {0.0F, 0.25F, 0.5F, 0.75F, 1.0F}) {
         const float drop = sphere ? problem.main_radius * (1.0F - std::sqrt(1.0F - part * part)) : 0.0F;
-        const float u_before = (problem.distance - box_along - part * before) / scale_of(problem);
-        const float u_behind = (problem.distance + box_along + part * behind) / scale_of(problem);
+        const float u_before = (problem.distance - box_along - part * extent.before) / scale_of(problem);
+        const float u_behind = (problem.distance + box_along + part * extent.behind) / scale_of(problem);
         const float share = std::min(unit_offset(family, std::max(u_before, 0.0F)),
                                      unit_offset(family, std::min(u_behind, curve_length_x(family, 1.0F))));
-        smallest =
-            std::max(smallest, (extent - drop + box_aside + kClearingSlack) / std::max(share - chord, kMinShare));
+        smallest = std::max(smallest, (aside - drop + box_aside + kClearingSlack) / std::max(share - chord, kMinShare));
     }
     return smallest;
 }
 
 void offsets_of_plane(const Problem& problem, const Settings& settings, Family family, const Vec3& half_extents,
-                      const Vec3& side, Offsets& out) noexcept
+                      const Vec3& side, const MainExtent& extent, Offsets& out) noexcept
 {
     out.clear();
     if (settings.offset_rule == OffsetRule::source) {
@@ -90,8 +102,8 @@ void offsets_of_plane(const Problem& problem, const Settings& settings, Family f
     }
     const std::size_t per_side = settings.offsets / 2U;
     const float box_aside = half_extents.dot(side.cwiseAbs());
-    const float left = smallest_clearing_offset(problem, settings, family, half_extents, side);
-    const float right = smallest_clearing_offset(problem, settings, family, half_extents, -side);
+    const float left = smallest_clearing_offset(problem, settings, family, half_extents, side, extent, extent.left);
+    const float right = smallest_clearing_offset(problem, settings, family, half_extents, -side, extent, extent.right);
     const float widest = kLargestRatio * scale_of(problem);
     for (std::size_t k = per_side; k > 0; --k) {
         if (const float offset = clearing_offset(problem, right, box_aside, k - 1, per_side); offset <= widest) {

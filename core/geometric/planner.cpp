@@ -3,7 +3,9 @@
 
 #include <algorithm>
 
+#include "core/base/work_units.hpp"
 #include "core/geometric/along_reference.hpp"
+#include "core/geometric/attempt.hpp"
 #include "core/geometric/in_a_row.hpp"
 #include "core/world/conflict.hpp"
 #include "core/world/passing_side.hpp"
@@ -141,12 +143,15 @@ PlanStatus solve_with_retries(const Problem& problem, const Settings& settings, 
 {
     PlanStatus status = PlanStatus::none_available;
     attempts = 0;
+    if (!vehicle::is_valid(limits) || !vehicle::is_valid(airframe) || !detail::has_valid_threats(problem, budget)) {
+        return detail::refused(budget, result);
+    }
     bool cut_short = false;
     for (std::size_t i = 0; i <= settings.retries && i < kAttempts.size() && status == PlanStatus::none_available;
          ++i) {
         const Attempt& attempt = kAttempts[i];
         Settings with = settings;
-        if (i > 0 && !apply(attempt, limits.kind, with)) {  // the first is as set: `solve` refuses what is invalid
+        if (i > 0 && !apply(attempt, limits.kind, with)) {  // the first is as set: refused there where it is invalid
             continue;
         }
         const bool in_a_row = attempt.kind == Attempt::Kind::in_a_row;
@@ -159,7 +164,8 @@ PlanStatus solve_with_retries(const Problem& problem, const Settings& settings, 
         tried.span_to = attempt.span_to;
         tried.apex_share = attempt.apex_share * problem.apex_share;
         status = in_a_row ? detail::solve_in_a_row(tried, with, limits, airframe, budget, workspace, result)
-                          : solve(tried, with, limits, airframe, budget, workspace, result);
+
+                          : detail::solve_valid(tried, with, limits, airframe, budget, workspace, result);
         result.attempt = i;
         ++attempts;
         cut_short = cut_short || result.cut_short;
@@ -185,6 +191,7 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     if (!world::is_complete(situation) || !is_valid(settings_)) {
         return PlanStatus::bad_input;
     }
+    static_cast<void>(budget.spend(units::kPlan));
     world::Way way = world::way_of(situation);
     world::Conflict conflict;
     const bool found = find_conflict(situation, situation.rules.lookahead, budget, way, conflict);

@@ -212,7 +212,7 @@ class Workspace {
 public:
     static constexpr std::size_t kBytes = kMaxPathPoints * (24 + 28 + 3 * 16) +
                                           16 * (kMaxTracks + kMaxObstacles + kMaxCylinders) + 3 * kMaxProblemThreats +
-                                          2 * kMaxTracks + 2 * kMaxCandidates + 12 * kMaxPlanes + 768;
+                                          2 * kMaxTracks + 2 * kMaxCandidates + 28 * kMaxPlanes + 768;
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): `solve` fills what it reads, zeroing all of it costs
     Workspace() noexcept {}
     [[nodiscard]] void* bytes() noexcept { return bytes_.data(); }

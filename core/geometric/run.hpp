@@ -12,6 +12,7 @@
 #include "core/geometric/clearance.hpp"
 #include "core/geometric/curve.hpp"
 #include "core/geometric/flown.hpp"
+#include "core/geometric/offsets.hpp"
 #include "core/geometric/planner.hpp"
 
 // Private to this module.
@@ -31,6 +32,10 @@ public:
 
     world::PlanStatus operator()() noexcept
     {
+        if (!budget_.spend(units_of_set_up())) {
+            result_.cut_short = true;
+            return world::PlanStatus::budget_spent;
+        }
         generate();
         prepare();
         // What has been found must not be left unchecked.
@@ -68,6 +73,18 @@ private:
         const std::size_t each = settings_.weights.passing > 0.0F ? 2 : 1;
         return units::kCostPoint * settings_.waypoints +
                units::closeness_units(settings_.waypoints, each * moving_.size());
+    }
+    /// Before the first candidate is evaluated.
+    [[nodiscard]] std::uint32_t units_of_set_up() const noexcept
+    {
+        const auto families = static_cast<std::uint32_t>(std::count_if(
+            kCurves.begin(), kCurves.end(), [this](Family family) { return settings_.*flag_of(family); }));
+        const std::uint32_t planes = settings_.extra_planes + 1U;
+        const std::size_t vertices = problem_.main_shape != nullptr ? problem_.main_shape->vertices.size() : 0;
+        return units::kAttempt + static_cast<std::uint32_t>(problem_.threats.size() / units::kThreatsListed) +
+               units::kPlanned * static_cast<std::uint32_t>(count_of_candidates(settings_)) +
+               families * (units::points_units(settings_.waypoints) + units::kPlaneOffsets * planes) +
+               2U * (planes + 1U) * (units::kMainExtent + units::hull_units(vertices));
     }
     [[nodiscard]] std::uint32_t units_of_curve() const noexcept
     {
@@ -116,6 +133,7 @@ private:
     Seconds longest_ = 0.0F;                      ///< duration of any candidate, where threats sweep volumes
     std::array<UnitCurve, kCurves.size()> unit_;  ///< by family
     std::array<Vec3, kMaxPlanes> sides_;
+    std::array<MainExtent, kMaxPlanes> extents_;  ///< by plane
     Clearance clearance_;
     Flown flown_;
     Selection far_{};  ///< moving threats beyond Settings::moving_nearest

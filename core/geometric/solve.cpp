@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "core/base/finite.hpp"
+#include "core/geometric/attempt.hpp"
 #include "core/geometric/run.hpp"
 
 namespace jink::geometric {
@@ -24,23 +25,9 @@ bool is_valid(const world::Threat& t) noexcept
            (!has_shape || (t.solid != nullptr && geometry::is_valid(*t.solid)));
 }
 
-/// Valid threats, within the capacities, and a main threat that is there.
-bool has_valid_threats(const Problem& p) noexcept
+std::uint32_t units_of_validity(const geometry::Shape* solid) noexcept
 {
-    std::size_t tracks = 0;
-    std::size_t at_rest = 0;
-    std::size_t moving = 0;
-    for (const world::Threat& threat : p.threats) {
-        if (!is_valid(threat)) {
-            return false;
-        }
-        tracks += threat.ref.kind == world::ThreatKind::track ? 1U : 0U;
-        if (threat.ref.kind == world::ThreatKind::obstacle) {
-            ++(detail::is_moving(threat) ? moving : at_rest);
-        }
-    }
-    return p.threats.size() <= kMaxProblemThreats && tracks <= kMaxTracks && moving <= kMaxMovingSolids &&
-           at_rest <= kMaxObstacles && (p.main == kNoThreat || p.main < tracks);
+    return units::kThreatValid + units::hull_units(solid != nullptr ? solid->vertices.size() : 0);
 }
 
 bool is_valid(const PathFrame& frame) noexcept
@@ -62,23 +49,34 @@ bool has_valid_scales(const Problem& p) noexcept
            is_finite(p.start_velocity) && is_finite(p.preferred_side) && is_finite(p.main_centre_offset);
 }
 
-bool is_valid(const Problem& p) noexcept
-{
-    return has_valid_scales(p) && has_valid_threats(p) &&
-           (p.main_shape == nullptr || geometry::is_valid(*p.main_shape));
-}
-
 }  // namespace
 
-PlanStatus solve(const Problem& problem, const Settings& settings, const vehicle::VehicleLimits& limits,
-                 const vehicle::Airframe& airframe, WorkBudget& budget, Workspace& workspace, Result& result) noexcept
+bool detail::has_valid_threats(const Problem& p, WorkBudget& budget) noexcept
 {
-    result.candidates.clear();
-    result.path.points.clear();
-    result.side = Vec3::Zero();
-    result.chosen = result.attempt = 0;
-    result.cut_short = false;
-    if (!is_valid(settings) || !vehicle::is_valid(limits) || !vehicle::is_valid(airframe) || !is_valid(problem)) {
+    std::size_t tracks = 0;
+    std::size_t at_rest = 0;
+    std::size_t moving = 0;
+    for (const world::Threat& threat : p.threats) {
+        if (!budget.spend(units_of_validity(threat.solid)) || !is_valid(threat)) {
+            return false;
+        }
+        tracks += threat.ref.kind == world::ThreatKind::track ? 1U : 0U;
+        if (threat.ref.kind == world::ThreatKind::obstacle) {
+            ++(is_moving(threat) ? moving : at_rest);
+        }
+    }
+    return p.threats.size() <= kMaxProblemThreats && tracks <= kMaxTracks && moving <= kMaxMovingSolids &&
+           at_rest <= kMaxObstacles && (p.main == kNoThreat || p.main < tracks) &&
+           (p.main_shape == nullptr ||
+            (budget.spend(units_of_validity(p.main_shape)) && geometry::is_valid(*p.main_shape)));
+}
+
+PlanStatus detail::solve_valid(const Problem& problem, const Settings& settings, const vehicle::VehicleLimits& limits,
+                               const vehicle::Airframe& airframe, WorkBudget& budget, Workspace& workspace,
+                               Result& result) noexcept
+{
+    clear(result);
+    if (!is_valid(settings) || !has_valid_scales(problem)) {
         return PlanStatus::bad_input;
     }
     if (problem.distance < kMinDistanceInRadii * scale_radius(problem)) {
@@ -87,6 +85,15 @@ PlanStatus solve(const Problem& problem, const Settings& settings, const vehicle
     static_assert(sizeof(Run) <= Workspace::kBytes && Workspace::kBytes <= sizeof(Run) + sizeof(Run) / 4 + 1024);
     static_assert(alignof(Run) <= alignof(std::max_align_t) && std::is_trivially_destructible_v<Run>);
     return (*new (workspace.bytes()) Run(problem, settings, limits, airframe, budget, result))();
+}
+
+PlanStatus solve(const Problem& problem, const Settings& settings, const vehicle::VehicleLimits& limits,
+                 const vehicle::Airframe& airframe, WorkBudget& budget, Workspace& workspace, Result& result) noexcept
+{
+    if (!vehicle::is_valid(limits) || !vehicle::is_valid(airframe) || !detail::has_valid_threats(problem, budget)) {
+        return detail::refused(budget, result);
+    }
+    return detail::solve_valid(problem, settings, limits, airframe, budget, workspace, result);
 }
 
 PlanStatus solve(const Problem& problem, const Settings& settings, const vehicle::VehicleLimits& limits,

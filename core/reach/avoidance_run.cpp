@@ -263,10 +263,11 @@ PlanStatus Planner::try_set(const Situation& situation, const Placed& placed, co
     if (const PlanStatus looked = look(situation, placed, start, budget); looked != PlanStatus::found) {
         return looked;
     }
-    near_.collect(situation, placed, start.lead, start.stop);
-    report_.near = static_cast<std::uint16_t>(near_.size());
     const auto entries = static_cast<std::uint32_t>(set.entries.size());
-    if (!near_.mark(placed, spheres_, budget) || !budget.spend(units::kReachEntries * (1U + entries / 8U))) {
+    const bool collected = near_.collect(situation, placed, start.lead, start.stop, budget);
+    report_.near = static_cast<std::uint16_t>(near_.size());
+    if (!collected || !near_.mark(placed, spheres_, budget) ||
+        !budget.spend(units::kReachEntries * (1U + entries / 8U))) {
         return PlanStatus::budget_spent;
     }
     // A node that conflicts with any threat is of no use, nor are its descendants, whatever the threat.
@@ -283,11 +284,11 @@ PlanStatus Planner::try_set(const Situation& situation, const Placed& placed, co
     const ChoiceRule rule{false, settings_.least_outer_layer};
     path::TimedPath path;
     for (int i = 0; i < settings_.tries && !budget.exhausted(); ++i) {
-        if (!budget.spend(units::kReachEntries * (1U + entries / 8U))) {
+        const Choice choice =
+            find_best_path_of_all(set, spheres_, nodes, cells, goal, AvoidanceRun::hard_constraints, rule, budget);
+        if (budget.exhausted()) {
             break;
         }
-        const Choice choice =
-            find_best_path_of_all(set, spheres_, nodes, cells, goal, AvoidanceRun::hard_constraints, rule);
         report_.path = choice.status;
         report_.run = choice.run;
         report_.node = choice.node;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/base/work_units.hpp"
+
 namespace jink::reach {
 namespace {
 
@@ -110,10 +112,14 @@ Choice find_best_path(const ReachSet& set, const CellSpheres& spheres, std::span
 
 Choice find_best_path_of_all(const ReachSet& set, const CellSpheres& spheres, std::span<const Level> nodes,
                              std::span<const Level> cells, const Vec3& goal, AvoidanceRun loosest,
-                             const ChoiceRule& rule) noexcept
+                             const ChoiceRule& rule, WorkBudget& budget) noexcept
 {
     Choice choice;
+    const std::uint32_t each = units::reach_choice_units(set.entries.size(), cells.size());
     for (int run = static_cast<int>(AvoidanceRun::soft_constraints); run >= static_cast<int>(loosest); --run) {
+        if (!budget.spend(each)) {
+            return {};
+        }
         choice = find_best_path(set, spheres, nodes, cells, goal, static_cast<AvoidanceRun>(run), rule);
         if (choice.node != kNoNode) {
             return choice;

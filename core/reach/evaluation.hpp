@@ -84,9 +84,10 @@ struct ChoiceRule {
                                     std::span<const Level> cells, const Vec3& goal, AvoidanceRun run,
                                     const ChoiceRule& rule) noexcept;
 
-/// The same in the strictest run that leaves a trajectory, from soft constraints down to `loosest`.
+/// The same in the strictest run that leaves a trajectory, from soft constraints down to `loosest`. No trajectory where
+/// the budget does not reach for a run.
 [[nodiscard]] Choice find_best_path_of_all(const ReachSet& set, const CellSpheres& spheres,
                                            std::span<const Level> nodes, std::span<const Level> cells, const Vec3& goal,
-                                           AvoidanceRun loosest, const ChoiceRule& rule) noexcept;
+                                           AvoidanceRun loosest, const ChoiceRule& rule, WorkBudget& budget) noexcept;
 
 }  // namespace jink::reach

@@ -146,7 +146,8 @@ void NearThreats::add_bound(const world::Threat& threat, const Vec3& own, const 
     }
 }
 
-void NearThreats::collect(const world::Situation& situation, const Placed& placed, Seconds lead, float beyond) noexcept
+bool NearThreats::collect(const world::Situation& situation, const Placed& placed, Seconds lead, float beyond,
+                          WorkBudget& budget) noexcept
 {
     rules_ = situation.rules;
     bulge_ = placed.bulge();
@@ -155,6 +156,10 @@ void NearThreats::collect(const world::Situation& situation, const Placed& place
     const Vec3& own = situation.limits.half_extents;
     const float range = placed.unit * placed.set->grid.distance() + bulge_ + beyond + rules_.clearance;
     for (const world::Threat& threat : situation.threats) {
+        const std::size_t vertices = threat.solid != nullptr ? threat.solid->vertices.size() : 0;
+        if (!budget.spend(units::kReachThreat + units::hull_units(vertices))) {
+            return false;
+        }
         switch (threat.form) {
         case world::ThreatForm::point: add_point(threat, own, placed, lead, range); break;
         case world::ThreatForm::solid: add_solid(threat, own, placed, range); break;
@@ -166,9 +171,10 @@ void NearThreats::collect(const world::Situation& situation, const Placed& place
     for (std::size_t i = 0; i < near_.size(); ++i) {
         all_.add(i);
     }
+    return true;
 }
 
-Level NearThreats::against(const NearThreat& threat, const Piece& piece) const noexcept
+Level NearThreats::against(const NearThreat& threat, const Piece& piece, WorkBudget& budget) const noexcept
 {
     constexpr Level kObstacle = static_cast<Level>(AvoidanceRun::obstacles);
     constexpr Level kIntruder = static_cast<Level>(AvoidanceRun::intruders);
@@ -206,9 +212,11 @@ Level NearThreats::against(const NearThreat& threat, const Piece& piece) const n
         return radius < 0.0F ? kNoRoom : threat.is_track ? kIntruder : kObstacle;
     }
     const geometry::QuickReject quick_reject = geometry::quick_reject(threat.half, first, last, radius);
+    // Without a budget for the exact test it counts as a contact.
     if (quick_reject == geometry::QuickReject::touches ||
         (quick_reject == geometry::QuickReject::unclear &&
-         geometry::contact_interval(threat.half, {}, {first, last - first}, radius, 1.0F))) {
+         (!budget.spend(units::kReachContact) ||
+          geometry::contact_interval(threat.half, {}, {first, last - first}, radius, 1.0F)))) {
         return threat.is_track ? kIntruder : kObstacle;
     }
     return kNoRoom;
@@ -235,7 +243,7 @@ Level NearThreats::against(const ThreatBits& bits, const Piece& piece, WorkBudge
             if (!budget.spend(is_solid ? units::kReachSolid : units::kReachCheck)) {
                 return kBlocked;
             }
-            level = std::min(level, against(near_[i], piece));
+            level = std::min(level, against(near_[i], piece, budget));
         }
     }
     return level;

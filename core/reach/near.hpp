@@ -65,7 +65,8 @@ public:
     /// @param lead    time from Situation::now until the path begins [s]
     /// @param beyond  distance past the grid's border that is checked as well [m]
     /// O(tracks + obstacles + cylinders).
-    void collect(const world::Situation& situation, const Placed& placed, Seconds lead, float beyond) noexcept;
+    [[nodiscard]] bool collect(const world::Situation& situation, const Placed& placed, Seconds lead, float beyond,
+                               WorkBudget& budget) noexcept;
 
     /// Finds, for each cell in which a node ends, the threats that may come near to the movements to and from that cell
     /// at the times at which a node is there. False when the budget is too small. O(nodes + cells * threats).
@@ -85,7 +86,7 @@ public:
     [[nodiscard]] std::size_t size() const noexcept { return near_.size(); }
 
 private:
-    [[nodiscard]] Level against(const NearThreat& threat, const Piece& piece) const noexcept;
+    [[nodiscard]] Level against(const NearThreat& threat, const Piece& piece, WorkBudget& budget) const noexcept;
     [[nodiscard]] Level against_cylinder(const NearThreat& cylinder, const Piece& piece) const noexcept;
     [[nodiscard]] Level against(const ThreatBits& bits, const Piece& piece, WorkBudget& budget) const noexcept;
     struct Depths;

@@ -110,7 +110,9 @@ bool NearThreats::mark(const Placed& placed, const CellSpheres& spheres, WorkBud
         }
         const LayerCells cells(placed, spheres, layer, depths);
         for (std::size_t i = 0; i < near_.size(); ++i) {
-            if (!pay()) {
+            const bool is_solid = near_[i].shape != nullptr;
+            if (!pay() ||
+                (is_solid && !budget.spend(units::kReachSolidCell * static_cast<std::uint32_t>(cells.count)))) {
                 return false;
             }
             mark_layer(placed, cells, i);

@@ -88,7 +88,7 @@ struct Crowd : RandomSituation {
 NearThreats& near_of(const Crowd& crowd, WorkBudget& budget)
 {
     static NearThreats near;
-    near.collect(crowd.view(), crowd.placed, 0.0F, 0.0F);
+    EXPECT_TRUE(near.collect(crowd.view(), crowd.placed, 0.0F, 0.0F, budget));
     EXPECT_TRUE(near.mark(crowd.placed, CellSpheres(crowd.placed.set->grid), budget));
     return near;
 }

@@ -13,6 +13,7 @@
 #include "core/base/work_units.hpp"
 #include "core/cost/tables.hpp"
 #include "core/geometric/curve.hpp"
+#include "core/geometric/planner.hpp"
 #include "core/geometry/convex.hpp"
 #include "core/orca/planner.hpp"
 #include "core/reach/planner.hpp"
@@ -52,10 +53,12 @@ private:
     void curve(Work work, WorkBudget& budget) noexcept;
     void program(WorkBudget& budget) noexcept;
     void scan() noexcept;
+    void candidates() noexcept;
     [[nodiscard]] std::uint32_t tables(WorkBudget& budget) noexcept;
 
     world::ThreatSet threats_;
     orca::Planner orca_;
+    geometric::Planner geometric_{geometric::Settings()};
     reach::Planner reach_{{.sets = &app::reach_sets()}};
     reach::ScanPicture picture_;
     std::array<orca::HalfSpace, kMaxOrcaPlanes> planes_{};
@@ -174,6 +177,23 @@ void UnitProbe::scan() noexcept
     picture_.end();
 }
 
+/// As many candidates as the co-processor's parameters allow, or fewer.
+void UnitProbe::candidates() noexcept
+{
+    geometric::Settings settings;
+    constexpr std::array<std::uint16_t, 4> kOffsets{2, 4, 8, 16};
+    settings.offsets = kOffsets[below(kOffsets.size())];
+    settings.extra_planes = static_cast<std::uint16_t>(below(16));
+    settings.simple = below(2) == 0;
+    settings.symmetric = below(2) == 0;
+    settings.waypoints = static_cast<std::uint16_t>(below(2) == 0 ? 8 : 8 + below(kMaxPathPoints - 7));
+    settings.security = below(4) == 0 ? geometric::SecurityMode::swept : geometric::SecurityMode::time_aware;
+    settings.moving_nearest = 8;
+    if (!geometric_.configure(settings)) {
+        static_cast<void>(geometric_.configure({}));
+    }
+}
+
 /// From anywhere in a pass, one piece, as a step does.
 std::uint32_t UnitProbe::tables(WorkBudget& budget) noexcept
 {
@@ -191,7 +211,10 @@ std::uint32_t UnitProbe::tables(WorkBudget& budget) noexcept
 std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
 {
     random_ = Random(seed * 977ULL + static_cast<std::uint32_t>(work));
-    WorkBudget budget(kAmple);
+    // In slices, as in a step.
+    WorkSlice slice([](void*) noexcept {}, nullptr);
+    slice.begin(kAmple);
+    WorkBudget budget(kAmple, slice);
     if (work <= Work::margin_solid) {
         geometry(work, budget);
         return budget.spent();
@@ -226,6 +249,10 @@ std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
     reach_.look_at(work == Work::reach_scan ? &picture_ : nullptr);
     if (work == Work::reach_scan) {
         scan();
+    }
+    if (work >= Work::geometric_tracks) {
+        candidates();
+        budget = WorkBudget(static_cast<std::uint32_t>(500 + below(20'000)), slice);
     }
     // What is counted is the work alone, without its choice.
     const auto counted = [](const auto& done) noexcept {
@@ -279,6 +306,12 @@ std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
     case Work::reach_cylinders:
     case Work::reach_scan:
         sink_ = counted([&] { return reach_.plan(s, budget, manoeuvre_); }) == world::PlanStatus::found ? 1.0F : 0.0F;
+        break;
+    case Work::geometric_tracks:
+    case Work::geometric_spheres:
+    case Work::geometric_solids:
+        sink_ =
+            counted([&] { return geometric_.plan(s, budget, manoeuvre_); }) == world::PlanStatus::found ? 1.0F : 0.0F;
         break;
     case Work::fallback:
         sink_ = counted([&] { return avoid::choose_fallback(s, way, nullptr, settings, budget).margin; });

@@ -57,35 +57,46 @@ void UnitScene::scene(Work work) noexcept
     airspace_.floor = -60.0F;
     airspace_.ceiling = 60.0F;
     airspace_.keep_in_radius = 200.0F;
-    reference_ = world::Reference({own_.position, own_.position + within(50.0F), 5.0F});
+    const Vec3 leg = within(50.0F);
+    reference_ = world::Reference({own_.position, own_.position + leg, 5.0F});
     tracks_.clear();
     obstacles_.clear();
     path();
 
+    const bool geometric = work >= Work::geometric_tracks && work <= Work::geometric_solids;
     const bool aircraft = work == Work::aircraft_look || work == Work::aircraft_command;
     rules_.well_clear.radius = aircraft ? 610.0F : 0.0F;
     const bool tracks = aircraft || work == Work::separation_tracks || work == Work::conflict_tracks ||
                         work == Work::fallback || work == Work::orca_tracks || work == Work::objective_leg ||
-                        work == Work::objective_route || work == Work::common_stop || work == Work::reach_tracks;
+                        work == Work::objective_route || work == Work::common_stop || work == Work::reach_tracks ||
+                        geometric;
     const bool spheres = work == Work::separation_spheres || work == Work::conflict_spheres || work == Work::fallback ||
-                         work == Work::orca_spheres || work == Work::reach_spheres;
+                         work == Work::orca_spheres || work == Work::reach_spheres || work == Work::geometric_spheres;
     const bool cylinders =
         work == Work::separation_cylinders || work == Work::conflict_cylinders || work == Work::reach_cylinders;
     const bool solids = work == Work::separation_solids || work == Work::conflict_solids || work == Work::orca_solids ||
-                        work == Work::reach_solids || work == Work::objective_solids;
+                        work == Work::reach_solids || work == Work::objective_solids || work == Work::geometric_solids;
     const float spread = random_.uniform(1.0F, 60.0F);
-    // Reach sets: few threats in every other case, where a node costs more than its threats.
-    const bool few = reach && below(2) == 0;
+    // Few threats in every other case, where a node or a candidate costs more than its threats.
+    const bool few = (reach || geometric) && below(2) == 0;
     const auto most = [few](std::size_t capacity) noexcept { return few ? std::size_t{4} : capacity + 1; };
+    // A plan needs something in its way.
+    const auto place = [&, this](std::size_t i) noexcept {
+        return geometric && i == 0 ? Vec3(own_.position + random_.uniform(0.1F, 1.0F) * leg + within(1.0F))
+                                   : Vec3(own_.position + within(spread));
+    };
     for (std::size_t i = 0, n = tracks ? below(most(kMaxTracks)) : 0; i < n; ++i) {
         world::Track track;
         track.id = static_cast<std::uint32_t>(i);
-        track.position = own_.position + within(spread);
+        track.position = place(i);
         track.velocity = below(3) == 0 ? own_.velocity : within(6.0F);
         track.radius = random_.uniform(0.2F, 4.0F);
         track.sigma_velocity = below(2) == 0 ? 0.0F : 0.2F;
         track.max_acceleration = below(3) == 0 ? 0.3F : 0.0F;
         track.cooperative = below(2) == 0;
+        if (geometric && i == 0 && below(2) == 0) {
+            track.velocity.setZero();
+        }
         if (aircraft) {
             track.manned = true;
             track.position = own_.position + within(25.0F * spread).cwiseProduct(Vec3(1.0F, 1.0F, 0.1F));
@@ -106,10 +117,10 @@ void UnitScene::scene(Work work) noexcept
     }
     airspace_.cylinders = {cylinders_.data(), cylinders_.size()};
     for (std::size_t i = 0, n = spheres ? below(most(kMaxObstacles)) : 0; i < n; ++i) {
-        obstacles_.unchecked_push_back({static_cast<world::ObstacleId>(i), upright(own_.position + within(spread))});
+        obstacles_.unchecked_push_back({static_cast<world::ObstacleId>(i), upright(place(i))});
     }
     for (std::size_t i = 0, n = solids ? below(6) : 0; i < n; ++i) {
-        const Vec3 at = own_.position + within(spread);
+        const Vec3 at = place(i);
         obstacles_.unchecked_push_back({static_cast<world::ObstacleId>(i), below(4) == 0 ? closed(at) : solid(at)});
     }
 }

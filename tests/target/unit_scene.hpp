@@ -52,6 +52,9 @@ enum class Work : std::uint32_t {
     reach_solids,
     reach_cylinders,
     reach_scan,
+    geometric_tracks,
+    geometric_spheres,
+    geometric_solids,
     count,
 };
 

@@ -17,6 +17,7 @@ STARTS = 40  # random cases; the climb starts from the most expensive
 PATIENCE = 500  # evaluations without a gain before a new start
 MEMORY = 15  # a step is accepted if it is no cheaper than the case this many steps ago: crosses small dips only
 ELITES = 12
+GAIN = 100  # instructions; a smaller one does not count as one
 
 
 @dataclasses.dataclass
@@ -29,10 +30,10 @@ class Found:
 
 
 class Counter:
-    """Instructions of one case on one target."""
+    """Instructions of one case on one target; by price: thousandths of them per work unit, of which there are counted 1000 at least."""
 
-    def __init__(self, target, build, plugin):
-        self.target = target
+    def __init__(self, target, build, plugin, by_price=False):
+        self.target, self.by_price = target, by_price
         self.probe = targets.open_probe(target, build, plugin)
         self.evaluations = 0
 
@@ -40,7 +41,9 @@ class Counter:
         self.evaluations += 1
         case.seed = self.evaluations & 0xFFFFFFFF
         answer = self.probe.ask(records.on_board(case, self.target))
-        return answer.instructions if answer.status != "bad_input" else 0
+        if answer.status == "bad_input":
+            return 0
+        return 1000 * answer.instructions // max(answer.work, 1000) if self.by_price else answer.instructions
 
 
 def climb(scene, count, r, start, patience, on_best, left):
@@ -58,7 +61,7 @@ def climb(scene, count, r, start, patience, on_best, left):
         step += 1
         idle += 1
         if cost > best[0]:
-            idle = 0 if cost > 1.0005 * best[0] else idle
+            idle = 0 if cost > best[0] + GAIN else idle
             best = (cost, case)
             on_best(best)
     return best
@@ -119,18 +122,18 @@ def at_random(scene, count, seed, worker, most, seconds, start=(), report=None):
 
 
 def _worker(arguments):
-    how, scene, target, build, plugin, seed, worker, most, seconds, start = arguments
+    how, scene, target, build, plugin, seed, worker, most, seconds, start, by_price = arguments
     os.nice(5)
-    count = Counter(target, build, plugin)
+    count = Counter(target, build, plugin, by_price)
     best = []
     (at_random if how == "random" else search)(scenes.SCENES[scene], count, seed, worker, most, seconds, start, best.append)
     count.probe.close()
     return best[-1] if best else None, count.evaluations
 
 
-def hunt(scene, target, build, plugin, seed, evaluations, seconds, workers, start=(), how="hunt"):
-    """The most expensive case found (Found), and the number of tried cases."""
-    jobs = [(how, scene, target, build, plugin, seed, w, -(-evaluations // workers), seconds, start[w::workers])
+def hunt(scene, target, build, plugin, seed, evaluations, seconds, workers, start=(), how="hunt", by_price=False):
+    """The most expensive case found (Found), and the number of tried cases. By price: that whose units pay for least."""
+    jobs = [(how, scene, target, build, plugin, seed, w, -(-evaluations // workers), seconds, start[w::workers], by_price)
             for w in range(workers)]
     with multiprocessing.Pool(workers) as pool:
         results = pool.map(_worker, jobs, chunksize=1)

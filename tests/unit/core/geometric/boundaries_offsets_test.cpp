@@ -62,6 +62,13 @@ struct OffsetScene : Scene {
     }
 };
 
+float smallest_to_the_left(const OffsetScene& scene, Family family, const Vec3& half)
+{
+    const Vec3 left = Vec3::UnitY();
+    const detail::MainExtent extent = detail::with_sides(scene.problem, left, detail::extent_along(scene.problem));
+    return detail::smallest_clearing_offset(scene.problem, scene.settings, family, half, left, extent, extent.left);
+}
+
 /// The innermost offset on either side: clear, and a share less of it would not be.
 void expect_tight(OffsetScene& scene, Family family, float plane, float clearance, float share)
 {
@@ -279,7 +286,7 @@ TEST(OffsetBorder, ASpheresWidthDoesNotDependOnHowFarAheadItIsNearest)
         OffsetScene scene(family, 20.0F);
         const auto smallest = [&](const Vec3& centre_offset) {
             scene.problem.main_centre_offset = centre_offset;
-            return detail::smallest_clearing_offset(scene.problem, scene.settings, family, half, Vec3::UnitY());
+            return smallest_to_the_left(scene, family, half);
         };
         const float abeam = smallest(Vec3::Zero());
         for (const float ahead : {-6.0F, -0.7F, 0.7F, 6.0F}) {
@@ -301,8 +308,7 @@ TEST(OffsetBorder, WhatReachesPastACurvesEndsIsClearedAThirdOfTheWay)
                 const float reach = 0.5F * length * kDistance;
                 scene.set_main(
                     geometry::make_box(Vec3(kDistance + side * reach, 0.0F, 50.0F), Vec3(reach, 2.0F, 20.0F)), 2.0F);
-                const float smallest =
-                    detail::smallest_clearing_offset(scene.problem, scene.settings, family, half, Vec3::UnitY());
+                const float smallest = smallest_to_the_left(scene, family, half);
                 EXPECT_NEAR(smallest, 3.0F * (2.0F + 0.4F + detail::kClearingSlack), 1e-4F) << int(family) << length;
             }
         }

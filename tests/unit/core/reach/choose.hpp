@@ -26,7 +26,8 @@ inline Choice find_best_path(const ReachSet& set, std::span<const Level> nodes, 
 inline Choice find_best_path_of_all(const ReachSet& set, std::span<const Level> nodes, std::span<const Level> cells,
                                     const Vec3& goal, AvoidanceRun loosest, const ChoiceRule& rule = {})
 {
-    return find_best_path_of_all(set, CellSpheres(set.grid), nodes, cells, goal, loosest, rule);
+    WorkBudget budget(1'000'000);
+    return find_best_path_of_all(set, CellSpheres(set.grid), nodes, cells, goal, loosest, rule, budget);
 }
 
 }  // namespace jink::reach

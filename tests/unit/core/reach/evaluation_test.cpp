@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "core/base/work_units.hpp"
 #include "tests/unit/core/reach/choose.hpp"
 #include "tests/unit/core/reach/small_tree.hpp"
 
@@ -305,10 +306,24 @@ TEST_F(EvaluationTest, TheStrictestRunThatLeavesAWayIsTakenDownToTheLoosest)
     EXPECT_EQ(none.run, kHardRun);
     nodes[left] = nodes[one] = 3;
     cells[tree.end(left)] = cells[tree.end(one)] = 3;
-    const Choice some = find_best_path_of_all(set, CellSpheres(set.grid), nodes, cells, goal, kObstacleRun, {true, 0});
+    const Choice some = find_best_path_of_all(set, nodes, cells, goal, kObstacleRun, {true, 0});
     EXPECT_EQ(some.run, kIntruderRun) << "the goal or nothing, in each run";
     EXPECT_EQ(some.node, three);
     EXPECT_EQ(find_best_path_of_all(set, nodes, cells, goal, kObstacleRun).run, kHardRun);
+}
+
+TEST_F(EvaluationTest, ARunThatTheBudgetDoesNotReachForLeavesNoWay)
+{
+    const Vec3 goal(2.6F, 0.0F, 0.0F);
+    all_at(3);
+    const std::uint32_t each = units::reach_choice_units(set.entries.size(), set.grid.cells());
+    const CellSpheres spheres(set.grid);
+    WorkBudget both(2 * each);
+    EXPECT_EQ(find_best_path_of_all(set, spheres, nodes, cells, goal, kHardRun, {}, both).node, three);
+    EXPECT_EQ(both.left(), 0U) << "nothing is free in the first one";
+    WorkBudget one(2 * each - 1);
+    EXPECT_EQ(find_best_path_of_all(set, spheres, nodes, cells, goal, kHardRun, {}, one).node, kNoNode);
+    EXPECT_TRUE(one.exhausted());
 }
 
 }  // namespace
