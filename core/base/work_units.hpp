@@ -70,9 +70,8 @@ inline constexpr std::uint32_t kObjectiveArc = 2;    ///< or arc
 
 // --- candidates (core/geometric) ---
 inline constexpr std::uint32_t kPlan = 12;           ///< a plan, before anything else
-inline constexpr std::uint32_t kThreatValid = 2;     ///< threat whose numbers are checked, before it is planned for
-inline constexpr std::uint32_t kAttempt = 24;        ///< an attempt, before its threats and its candidates
-inline constexpr std::size_t kThreatsListed = 8;     ///< and so many threats, gone through for those that move
+inline constexpr std::uint32_t kThreatValid = 1;     ///< threat whose numbers are checked, before it is planned for
+inline constexpr std::uint32_t kAttempt = 24;        ///< an attempt, before its candidates
 inline constexpr std::uint32_t kPlanned = 1;         ///< and a candidate, before it is made
 inline constexpr std::uint32_t kPlaneOffsets = 8;    ///< and a family's offsets in a plane
 inline constexpr std::uint32_t kMainExtent = 3;      ///< and each extent of the main threat
@@ -87,17 +86,19 @@ constexpr std::uint32_t closeness_units(std::size_t points, std::size_t moving) 
 }
 inline constexpr std::uint32_t kTableLookUp = 8;      ///< length, duration and smoothness of a curve out of the tables
 inline constexpr std::uint32_t kTableEnergy = 24;     ///< its energy, with the limits binding on all of it
-inline constexpr std::uint32_t kCollected = 3;        ///< threat or obstacle whose distance from the reach is checked
+inline constexpr std::uint32_t kCollected = 2;        ///< threat or obstacle whose distance from the reach is checked
 inline constexpr std::uint32_t kItem = 4;             ///< sphere that a curve is checked against, all of it far
 inline constexpr std::uint32_t kFarItem = 2;          ///< and one whose bounds are out of reach of the whole curve
 inline constexpr std::uint32_t kSphereCheck = 2;      ///< a closer check of a segment against a sphere
 inline constexpr std::uint32_t kSphereCheckPart = 1;  ///< and each part of a segment that is checked by itself
 inline constexpr std::uint32_t kSphereContact = 7;    ///< and an exact contact test
 inline constexpr std::uint32_t kSolidCheck = 3;       ///< solid that a curve is checked against, all of it far
-inline constexpr std::uint32_t kSolidNear = 8;        ///< and one whose bounds are within reach: its planes
+inline constexpr std::uint32_t kSolidNear = 5;        ///< and one whose bounds are within reach: its planes
 inline constexpr std::uint32_t kSolidSegment = 1;     ///< and each segment of one that may be near
 inline constexpr std::uint32_t kSolidPlanes = 3;      ///< and a closer check of such a segment, before any query
-/// All points of a curve against the airspace's bounds, or a solid's planes.
+/// All points of a curve against the airspace's bounds.
+constexpr std::uint32_t bounds_units(std::size_t points) noexcept { return static_cast<std::uint32_t>(points / 5 + 1); }
+/// All points of a curve against a solid's planes.
 constexpr std::uint32_t points_units(std::size_t points) noexcept { return static_cast<std::uint32_t>(points / 3 + 1); }
 /// Factor by which a solid lengthens the checks of an attempt: the same number of turns on every target.
 inline constexpr std::uint32_t kSolidShares = kSoftDoubles ? 28 : 1;

@@ -214,7 +214,7 @@ bool Clearance::touches(const View& view, const Item& item, WorkBudget& budget) 
 
 Verdict Clearance::check(const Curve& curve, WorkBudget& budget, Part part) const noexcept
 {
-    if (!budget.spend(units::points_units(curve.points))) {
+    if (!budget.spend(units::bounds_units(curve.points))) {
         return {CandidateStatus::not_evaluated, {}};
     }
     if (part != Part::deferred) {

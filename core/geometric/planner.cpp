@@ -164,7 +164,6 @@ PlanStatus solve_with_retries(const Problem& problem, const Settings& settings, 
         tried.span_to = attempt.span_to;
         tried.apex_share = attempt.apex_share * problem.apex_share;
         status = in_a_row ? detail::solve_in_a_row(tried, with, limits, airframe, budget, workspace, result)
-
                           : detail::solve_valid(tried, with, limits, airframe, budget, workspace, result);
         result.attempt = i;
         ++attempts;

@@ -81,8 +81,7 @@ private:
             kCurves.begin(), kCurves.end(), [this](Family family) { return settings_.*flag_of(family); }));
         const std::uint32_t planes = settings_.extra_planes + 1U;
         const std::size_t vertices = problem_.main_shape != nullptr ? problem_.main_shape->vertices.size() : 0;
-        return units::kAttempt + static_cast<std::uint32_t>(problem_.threats.size() / units::kThreatsListed) +
-               units::kPlanned * static_cast<std::uint32_t>(count_of_candidates(settings_)) +
+        return units::kAttempt + units::kPlanned * static_cast<std::uint32_t>(count_of_candidates(settings_)) +
                families * (units::points_units(settings_.waypoints) + units::kPlaneOffsets * planes) +
                2U * (planes + 1U) * (units::kMainExtent + units::hull_units(vertices));
     }

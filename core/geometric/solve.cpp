@@ -30,6 +30,11 @@ std::uint32_t units_of_validity(const geometry::Shape* solid) noexcept
     return units::kThreatValid + units::hull_units(solid != nullptr ? solid->vertices.size() : 0);
 }
 
+const geometry::Shape* solid_of(const world::Threat& threat) noexcept
+{
+    return threat.form == world::ThreatForm::solid ? threat.solid : nullptr;
+}
+
 bool is_valid(const PathFrame& frame) noexcept
 {
     return is_finite(frame.origin) && frame.axes.allFinite() && frame.axes.isUnitary(1e-3F);
@@ -57,7 +62,7 @@ bool detail::has_valid_threats(const Problem& p, WorkBudget& budget) noexcept
     std::size_t at_rest = 0;
     std::size_t moving = 0;
     for (const world::Threat& threat : p.threats) {
-        if (!budget.spend(units_of_validity(threat.solid)) || !is_valid(threat)) {
+        if (!budget.spend(units_of_validity(solid_of(threat))) || !is_valid(threat)) {
             return false;
         }
         tracks += threat.ref.kind == world::ThreatKind::track ? 1U : 0U;

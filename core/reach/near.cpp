@@ -156,7 +156,7 @@ bool NearThreats::collect(const world::Situation& situation, const Placed& place
     const Vec3& own = situation.limits.half_extents;
     const float range = placed.unit * placed.set->grid.distance() + bulge_ + beyond + rules_.clearance;
     for (const world::Threat& threat : situation.threats) {
-        const std::size_t vertices = threat.solid != nullptr ? threat.solid->vertices.size() : 0;
+        const std::size_t vertices = threat.form == world::ThreatForm::solid ? threat.solid->vertices.size() : 0;
         if (!budget.spend(units::kReachThreat + units::hull_units(vertices))) {
             return false;
         }

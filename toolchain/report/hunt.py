@@ -30,7 +30,7 @@ class Found:
 
 
 class Counter:
-    """Instructions of one case on one target; by price: thousandths of them per work unit, of which there are counted 1000 at least."""
+    """What is hunted, of one case on one target."""
 
     def __init__(self, target, build, plugin, by_price=False):
         self.target, self.by_price = target, by_price
@@ -43,7 +43,7 @@ class Counter:
         answer = self.probe.ask(records.on_board(case, self.target))
         if answer.status == "bad_input":
             return 0
-        return 1000 * answer.instructions // max(answer.work, 1000) if self.by_price else answer.instructions
+        return records.by_weight(answer, self.by_price)
 
 
 def climb(scene, count, r, start, patience, on_best, left):

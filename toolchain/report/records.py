@@ -243,14 +243,20 @@ class Bench:
         lines = subprocess.run([self.sim, "rates", *map(str, clocks)], check=True, capture_output=True, text=True).stdout.splitlines()
         return {line.split()[0]: dict(zip(("instructions", "units", "slice"), map(int, line.split()[1:]))) for line in lines}
 
-    def hunt_steps(self, target, scene, seeds, workers):
-        """The most expensive step of many crowds, (its answer, crowd, step), and the number of all steps."""
+    def hunt_steps(self, target, scene, seeds, workers, by_price=False):
+        """The most expensive step of many crowds, or the one of the dearest units: (its answer, crowd, step), and the number of all steps."""
         def of_crowd(seed):
             answers = self.steps(target, scene, seed)
-            return max(((a, seed, i) for i, a in enumerate(answers)), key=lambda item: item[0].instructions), len(answers)
+            return max((by_weight(a, by_price), seed, i, a) for i, a in enumerate(answers)), len(answers)
         with concurrent.futures.ThreadPoolExecutor(workers) as pool:
             found = list(pool.map(of_crowd, seeds))
-        return max((most for most, _ in found), key=lambda item: (item[0].instructions, *item[1:])), sum(count for _, count in found)
+        _, crowd, step, answer = max(most for most, _ in found)
+        return (answer, crowd, step), sum(count for _, count in found)
+
+
+def by_weight(answer, by_price):
+    """What hunts look for: instructions; by price thousandths of them per work unit, of which there are counted 1000 at least."""
+    return 1000 * answer.instructions // max(answer.work, 1000) if by_price else answer.instructions
 
 
 def write_crowd(folder, scene, target, crowd, how):

@@ -97,11 +97,11 @@ TEST(FollowCheck, PlaneThatRollsOutOfATurnFirstIsNotAccused)
     Followed f = plane();
     const auto course = [](float angle) { return Vec3(18.0F * std::cos(angle), 18.0F * std::sin(angle), 0.0F); };
     const Vec3 command = course(-0.8F);
-    for (int i = 0; i < 50; ++i) {
-        ASSERT_FALSE(f.tick(command, course(0.006F * static_cast<float>(i)))) << "1 s the wrong way, 5.4 m/s2";
+    for (int i = 0; i < 100; ++i) {
+        ASSERT_FALSE(f.tick(command, course(0.006F * static_cast<float>(i)))) << "2 s the wrong way, 5.4 m/s2";
     }
-    for (int i = 0; i < 200; ++i) {
-        ASSERT_FALSE(f.tick(command, course(std::max(0.3F - 0.006F * static_cast<float>(i), -0.8F)))) << i;
+    for (int i = 0; i < 250; ++i) {
+        ASSERT_FALSE(f.tick(command, course(std::max(0.6F - 0.006F * static_cast<float>(i), -0.8F)))) << i;
     }
 }
 

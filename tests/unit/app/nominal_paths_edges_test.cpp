@@ -243,6 +243,28 @@ TEST_F(NominalEdges, ResetBelievesTheLegAgain)
     EXPECT_EQ(ticks_until_doubted(Vec3(0, 5, 0)), 24);
 }
 
+TEST_F(NominalEdges, SpeedUnderOurCommandsIsNotTheMissionsUntilASecondLater)
+{
+    hold(Vec3(5, 0, 0), 20);
+    hold(Vec3(3, 0, 0), 40, true);
+    hold(Vec3(3, 0, 0), 16);
+    EXPECT_EQ(paths.primary().speed, 5.0F) << "15 sixteenths after the giving back";
+    hold(Vec3(3, 0, 0), 1);
+    EXPECT_EQ(paths.primary().speed, 3.0F);
+}
+
+TEST_F(NominalEdges, MotionUnderASlowCruiseSpeedIsKeptFromHalfOfItOn)
+{
+    has_leg = false;
+    for (const float speed : {0.55F, 0.65F}) {
+        limits.cruise_speed = 1.2F;
+        paths.reset();
+        hold(Vec3(speed, 0, 0), 4);
+        hold(Vec3(speed, 0, 0), 1, true);
+        EXPECT_EQ(end_of(paths.primary()) == own.position, speed < 0.6F) << speed;
+    }
+}
+
 TEST_F(NominalEdges, StandingIsSlowerThanItsBound)
 {
     has_leg = false;

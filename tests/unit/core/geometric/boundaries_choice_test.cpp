@@ -133,7 +133,8 @@ TEST(ChoiceBorder, CostsArePaidForWhatIsClearAlone)
             EXPECT_EQ(c.total > 0.0F, is_clear);
         }
         const std::uint32_t costs = static_cast<std::uint32_t>(clear) * units::closeness_units(25, far);
-        return scene.budget.spent() - costs - units::kCollected * static_cast<std::uint32_t>(far);
+        return scene.budget.spent() - costs -
+               (units::kThreatValid + units::kCollected) * static_cast<std::uint32_t>(far);
     };
     EXPECT_EQ(spent(0, false), spent(9, false));
     EXPECT_EQ(spent(0, true), spent(9, true));

@@ -221,7 +221,7 @@ TEST(ContactBorder, ALookAtWhatIsFarCostsTheSameForEach)
     const std::uint32_t none = spent(0);
     for (std::uint32_t n = 1; n <= 8; ++n) {
         const std::uint32_t each = n > 4 ? units::kFarItem : units::kItem;
-        EXPECT_EQ(spent(n), none + n * (units::kCollected + 2 * each)) << n;
+        EXPECT_EQ(spent(n), none + n * (units::kThreatValid + units::kCollected + 2 * each)) << n;
     }
 }
 

@@ -37,6 +37,7 @@ struct OffsetScene : Scene {
     }
     std::vector<float> offsets(float plane)
     {
+        budget = WorkBudget{1'000'000};
         static_cast<void>(run());
         std::vector<float> out;
         for (const Candidate& c : result.candidates) {

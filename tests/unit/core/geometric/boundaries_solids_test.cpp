@@ -156,10 +156,11 @@ TEST(SolidBorder, WhatIsFarFromACurveCostsALook)
         EXPECT_EQ(bench.counted_solids, 1U);
         return bench.spent;
     };
+    const std::uint32_t near = units::kSolidCheck + units::kSolidNear;
     // The sphere about it is, though no face of it lies between; a face does, though the sphere about it reaches
     // farther.
-    EXPECT_EQ(spent_on(geometry::make_box(Vec3(0.0F, 6.0F, 0.0F), Vec3::Ones(), turned)), units::kSolidCheck);
-    EXPECT_EQ(spent_on(geometry::make_box(Vec3(0.0F, 6.0F, 0.0F), Vec3(30.0F, 1.0F, 1.0F))), units::kSolidCheck);
+    EXPECT_EQ(spent_on(geometry::make_box(Vec3(0.0F, 6.0F, 0.0F), Vec3::Ones(), turned)), near - units::kSolidNear);
+    EXPECT_EQ(spent_on(geometry::make_box(Vec3(0.0F, 6.0F, 0.0F), Vec3(30.0F, 1.0F, 1.0F))), near);
 }
 
 TEST(SolidBorder, SegmentsThatAreFarAreNotLookedAtCloser)
@@ -168,7 +169,7 @@ TEST(SolidBorder, SegmentsThatAreFarAreNotLookedAtCloser)
     CurveBench bench({{Vec3::Zero(), 0.0F}, {Vec3(10.0F, 0.0F, 0.0F), 2.0F}, {Vec3(10.0F, 10.0F, 0.0F), 4.0F}});
     bench.obstacles = {{1, geometry::make_box(Vec3(4.0F, 6.0F, 0.0F), Vec3::Ones())}};
     ASSERT_EQ(bench.status(), CandidateStatus::available);
-    EXPECT_EQ(bench.spent, 2 * units::kSolidCheck + units::points_units(3) + 2 * units::kSolidSegment);
+    EXPECT_EQ(bench.spent, units::kSolidCheck + units::kSolidNear + units::points_units(3) + 2 * units::kSolidSegment);
 }
 
 TEST(SolidBorder, WhoFliesIntoAWallAtItsTopTakesNoCloserLook)
@@ -182,7 +183,7 @@ TEST(SolidBorder, WhoFliesIntoAWallAtItsTopTakesNoCloserLook)
         CurveBench bench(points);
         bench.obstacles = {{1, geometry::make_box(Vec3(static_cast<float>(top), 8.0F, 0.0F), Vec3::Constant(2.0F))}};
         ASSERT_EQ(bench.status(), CandidateStatus::hits_static);
-        EXPECT_EQ(bench.spent, 2 * units::kSolidCheck) << top;
+        EXPECT_EQ(bench.spent, units::kSolidCheck + units::kSolidNear) << top;
     }
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/base/work_units.hpp"
 #include "core/geometric/clearance.hpp"
 #include "tests/unit/core/geometric/scene.hpp"
 
@@ -41,7 +42,7 @@ inline detail::Curve curve_through(const std::vector<CurvePoint>& points, const 
 struct CurveBench : Scene {
     detail::Curve curve{};
     detail::Selection deferred{};
-    std::uint32_t spent = 0;  ///< by the last check, without collection
+    std::uint32_t spent = 0;  ///< by the last check, without collection and the look at the airspace's bounds
     std::uint32_t counted_solids = 0;
 
     explicit CurveBench(const std::vector<CurvePoint>& points) : curve(curve_through(points))
@@ -70,7 +71,7 @@ struct CurveBench : Scene {
         counted_solids = clearance.solids();
         WorkBudget left(units);
         const detail::Verdict verdict = clearance.check(curve, left, part);
-        spent = left.spent();
+        spent = left.spent() - std::min(left.spent(), units::bounds_units(curve.points));
         return verdict;
     }
     CandidateStatus status() { return check().status; }

@@ -153,11 +153,19 @@ TEST(SolveStatus, NoneCheapEnough)
 
 TEST(SolveStatus, BudgetSpentLeavesTheRestNotEvaluated)
 {
-    Scene scene;
-    scene.budget = WorkBudget{0};
-    EXPECT_EQ(scene.run(), PlanStatus::budget_spent);
-    EXPECT_EQ(scene.count(CandidateStatus::available), 0U);
-    EXPECT_GT(scene.count(CandidateStatus::not_evaluated), 0U);
+    std::size_t begun = 0;
+    for (std::uint32_t units = 0; units <= 400; ++units) {
+        Scene scene;
+        scene.budget = WorkBudget{units};
+        EXPECT_EQ(scene.run(), PlanStatus::budget_spent) << units;
+        EXPECT_TRUE(scene.result.cut_short) << units;
+        EXPECT_EQ(scene.count(CandidateStatus::chosen), 0U) << units;
+        // Before the candidates can be listed there are none.
+        begun += scene.result.candidates.empty() ? 0U : 1U;
+        EXPECT_EQ(scene.count(CandidateStatus::not_evaluated) > 0U, !scene.result.candidates.empty()) << units;
+    }
+    EXPECT_GT(begun, 0U);
+    EXPECT_LT(begun, 400U);
 }
 
 TEST(SolveStatus, WhatWasFoundBeforeTheBudgetEndedMayBeChosen)
