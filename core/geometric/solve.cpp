@@ -14,7 +14,6 @@ namespace jink::geometric {
 namespace {
 
 using detail::Curve;
-using detail::Run;
 using world::PlanStatus;
 
 bool is_valid(const world::Threat& t) noexcept
