@@ -42,7 +42,7 @@ inline detail::Curve curve_through(const std::vector<CurvePoint>& points, const 
 struct CurveBench : Scene {
     detail::Curve curve{};
     detail::Selection deferred{};
-    std::uint32_t spent = 0;  ///< by the last check, without collection and the look at the airspace's bounds
+    std::uint32_t spent = 0;  ///< by the last check, without collection and the check of the airspace's bounds
     std::uint32_t counted_solids = 0;
 
     explicit CurveBench(const std::vector<CurvePoint>& points) : curve(curve_through(points))
