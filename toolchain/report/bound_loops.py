@@ -84,7 +84,7 @@ RULES = [
     (r"stl_heap\.h.*__(adjust|push)_heap|stl_heap\.h:(229|140)", "each", lambda p: math.ceil(math.log2(max(2, p["candidates"]))) + 1),
     (r"stl_heap\.h", "each", lambda p: p["candidates"]),
     (r"(solve|choose|generate)\.cpp:.*(result_\.path\.points|unit\.points)|operator=|StaticVector|std::array|static_vector", "each", lambda p: 128),
-    (r"(solve\.cpp|choose\.cpp|generate\.cpp|run\.hpp):.*(candidates|order_?\.empty|planes|offset|evaluate\()|offsets\.cpp", "each", lambda p: p["candidates"]),
+    (r"(solve\.cpp|choose\.cpp|generate\.cpp|run\.hpp):.*(candidates|order_?\.empty|planes|offset|evaluate\(|units_of_curve\(\)\)|each \* settings_\.waypoints)|offsets\.cpp", "each", lambda p: p["candidates"]),
     (r"(solve|choose|generate)\.cpp:.*Family", "each", lambda p: 4),
     (r"curve\.cpp|^core/cost/|(solve|choose|generate)\.cpp:.*(max_element|closeness_nearest)", "each", lambda p: max(p["waypoints"], p["tracks"])),
     (r"clearance(_airspace|_spheres)?\.cpp", "each", lambda p: p["points"] - 1),
