@@ -46,7 +46,7 @@ inline constexpr std::uint32_t kCylinderPart = 6;  ///< or a cylinder: both ends
 inline constexpr std::uint32_t kCylinderTurn = 3;  ///< and each instant between them that is checked
 
 // --- conflicts (core/world/conflict) ---
-inline constexpr std::uint32_t kConflictLook = 5;      ///< pieces of the nominal path, before any threat
+inline constexpr std::uint32_t kConflictLook = 6;      ///< pieces of the nominal path, before any threat
 inline constexpr std::uint32_t kConflict = 16;         ///< of the nominal path with a track
 inline constexpr std::uint32_t kConflictPart = 8;      ///< and each half second in which it grows
 inline constexpr std::uint32_t kConflictSphere = 9;    ///< of the nominal path with a sphere or an upright capsule
@@ -69,7 +69,7 @@ inline constexpr std::uint32_t kObjectivePoint = 1;  ///< and each of its points
 inline constexpr std::uint32_t kObjectiveArc = 2;    ///< or arc
 
 // --- candidates (core/geometric) ---
-inline constexpr std::uint32_t kPlan = 12;           ///< a plan, before anything else
+inline constexpr std::uint32_t kPlan = 14;           ///< a plan, before anything else
 inline constexpr std::uint32_t kThreatValid = 1;     ///< threat whose numbers are checked, before it is planned for
 inline constexpr std::uint32_t kAttempt = 24;        ///< an attempt, before its candidates
 inline constexpr std::uint32_t kPlanned = 1;         ///< and a candidate, before it is made
@@ -126,7 +126,7 @@ inline constexpr std::uint32_t kReachPath = 30;      ///< trajectory that is mad
 inline constexpr std::uint32_t kReachScanCell = 20;  ///< cell of a set or of a scan, when one is laid over the other
 
 // --- checks of tables in the background (core/reach/vehicle_sets) ---
-inline constexpr std::uint32_t kTableElements = 10;  ///< 32 numbers of a table that is checked
+inline constexpr std::uint32_t kTableElements = 11;  ///< 32 numbers of a table that is checked
 inline constexpr std::uint32_t kTableNumbers = 20;   ///< and the numbers of a vehicle's sets
 
 // --- cost to go (core/world/cost_to_go_field) ---

@@ -129,12 +129,12 @@ class Running:
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
     def stop(self):
-        """Each late step must have been delayed by the host for a tick."""
+        """No reader may hold a step: those that read nothing stand for seconds. How late the host lets a step begin is not judged."""
         waited = self.waited()
         self.jinkd.send_signal(signal.SIGTERM)
         assert self.jinkd.wait(PATIENCE) == 0, "jinkd did not end well"
         summary = json.loads(self.summary.read_text())
         assert summary["steps"] > 50, summary["steps"]
-        assert summary["deadlines_missed"] * 0.02 <= waited, f"{summary['deadlines_missed']} steps late, {waited} s without a processor"
+        assert summary["step_max_us"] * 1e-6 < 1.0 + waited, f"a step of {summary['step_max_us']} us, {waited} s without a processor"
         os.close(self.master)
         os.close(self.other)

@@ -229,10 +229,13 @@ TEST(PlanOutput, EveryWayToStop)
     }
 
     const ProblemFile hurried = problem_of(kCrossing + "settings: {check_acceleration: false}\n");
-    const auto spent = solve_problem(hurried, 1);
-    EXPECT_EQ(spent->status, PlanStatus::budget_spent);
-    EXPECT_NE(plan_table(hurried, *spent).find("Stop: the work budget ran out"), std::string::npos);
-    EXPECT_NE(plan_table(hurried, *spent).find("not evaluated"), std::string::npos);
+    for (const std::uint32_t units : {1U, 300U}) {
+        const auto spent = solve_problem(hurried, units);
+        EXPECT_EQ(spent->status, PlanStatus::budget_spent);
+        EXPECT_NE(plan_table(hurried, *spent).find("Stop: the work budget ran out"), std::string::npos);
+        const bool are_made = plan_table(hurried, *spent).find("not evaluated") != std::string::npos;
+        EXPECT_EQ(are_made, units > 1) << "candidates";
+    }
 }
 
 TEST(PlanOutput, ContactWithAThreatsPathIsNoNumberInJson)

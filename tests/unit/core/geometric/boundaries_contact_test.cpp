@@ -45,7 +45,9 @@ struct StraightScene : Scene {
     }
     CandidateStatus status()
     {
+        budget = WorkBudget(10'000'000);  // of this plan alone
         static_cast<void>(run());
+        EXPECT_LT(chosen, result.candidates.size());
         return result.candidates[chosen].status;
     }
     std::size_t chosen = 0;
