@@ -68,6 +68,7 @@ std::vector<WaypointPlans> waypoint_plans(const files::Vehicle& vehicle, const s
         problem.threats = drawn.threats;
         geometric::Settings settings;
         settings.waypoints = count;
+        settings.check_units = 1'000'000;  // the answer, not where the work of an attempt ends
         settings.caps = vehicle.caps;
         WorkBudget budget(1'000'000);
         const auto status =
