@@ -40,6 +40,7 @@ endif()
 add_library(jink_warnings INTERFACE)
 target_compile_options(jink_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wdouble-promotion -Wshadow
+  $<$<NOT:$<BOOL:${CMAKE_CROSSCOMPILING}>>:-Wformat-security>  # an error where Debian's packages are built
   $<$<BOOL:${JINK_WERROR}>:-Werror>)
 
 # jink_embedded: rules of flashed code (no exceptions, no RTTI, no thread-safe statics).

@@ -123,7 +123,7 @@ void print_log_summary(const std::string& name, const LogSummary& s, std::ostrea
     if (s.longest_step > 0) {
         print("step mean %.1f us, max %u us\n", s.mean_step, s.longest_step);
     } else {
-        print("their durations were not measured\n");
+        out << "their durations were not measured\n";
     }
     print("  %" PRIu64 " messages, %" PRIu64 " dropouts of %.1f s\n", s.messages, s.dropouts, s.dropout_time);
     out << "  end: " << ulog::to_string(s.end) << ", " << s.end_offset << " bytes read\n";
