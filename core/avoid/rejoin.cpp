@@ -155,6 +155,24 @@ bool StateMachine::keep_course(Tick& tick) noexcept
     return true;
 }
 
+/// A bound of the airspace bends the command off the way back, along which conflicts were searched: whether it leads
+/// into a conflict that there would be no time to stop for.
+bool StateMachine::is_bent_into_conflict(Tick& tick) const noexcept
+{
+    const Vec3& command = tick.out.velocity;
+    const float speed = command.norm();
+    if (!tick.in_control || tick.removed == Vec3::Zero() || !(speed > 0.0F)) {
+        return false;
+    }
+    const float fastest = std::max(speed, tick.s.own.velocity.norm());
+    const Seconds ahead = vehicle::stopping_time(fastest, tick.s.limits) + settings_.reserve;
+    const Vec3& at = tick.s.own.position;
+    const world::Reference along({at, at + tick.s.rules.lookahead * command, speed});
+    const world::Situation bent = world::with_reference(tick.s, along);
+    world::Conflict conflict;
+    return world::main_conflict(bent, world::way_of(bent), ahead, tick.budget, conflict);
+}
+
 void StateMachine::rejoin(Tick& tick) noexcept
 {
     if (keep_parallel(tick)) {
@@ -177,6 +195,10 @@ void StateMachine::rejoin(Tick& tick) noexcept
         return;
     }
     follow_nominal(tick);
+    if (is_bent_into_conflict(tick)) {
+        fall_back(tick);
+        return;
+    }
     if (is_back(tick) && is_clear_for(tick, settings_.settle) && may_give_back(tick)) {
         ++diagnostics_.rejoined;
         flying_.reset();

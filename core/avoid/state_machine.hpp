@@ -92,6 +92,7 @@ private:
     void follow_nominal(Tick& tick) const noexcept;
     [[nodiscard]] bool keep_parallel(Tick& tick) noexcept;
     [[nodiscard]] bool keep_course(Tick& tick) noexcept;
+    [[nodiscard]] bool is_bent_into_conflict(Tick& tick) const noexcept;
     [[nodiscard]] bool is_back(const Tick& tick) const noexcept;
     // nominal_choice.cpp
     [[nodiscard]] bool counts(const Tick& tick, const world::Conflict& conflict) const noexcept;

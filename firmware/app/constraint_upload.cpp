@@ -57,6 +57,13 @@ link::ConstraintResult ConstraintUpload::take(const link::ConstraintPart& part, 
     if (is_other || !belongs(part)) {
         begin(part);
     }
+    // Merged on a board, such a set would be placed in one of the two frames.
+    const bool has_others = part.count > 0 && (received_ & ~(1U << part.index)) != 0;
+    if (has_others && constraint.about.has_value() != is_global_) {
+        ++diagnostics_.refused;
+        return link::ConstraintResult::out_of_range;
+    }
+    is_global_ = constraint.about.has_value();
     if (part.count > 0) {
         parts_[part.index] = constraint;
         received_ |= 1U << part.index;

@@ -13,7 +13,7 @@ namespace jink::app {
 struct ConstraintUploadDiagnostics {
     std::uint32_t sets = 0;       ///< complete
     std::uint32_t abandoned = 0;  ///< incomplete when another set began
-    std::uint32_t refused = 0;    ///< parts: out of range, or of too large a set
+    std::uint32_t refused = 0;    ///< parts: out of range, of too large a set, or not in the frame of its other parts
 };
 
 /// Collects the parts of a set of constraints, in any order. The set in force does not change before the new one is
@@ -48,6 +48,7 @@ private:
     bool has_set_ = false;
     bool is_complete_ = false;
     bool in_force_ = false;
+    bool is_global_ = false;  ///< the parts are placed on the globe
     std::uint8_t number_ = 0;
     std::uint8_t from_system_ = 0;
     std::uint8_t from_component_ = 0;

@@ -58,14 +58,16 @@ bool Coprocessor::is_disarmed(TimePoint now) const noexcept
            !control_.takeover().streaming();
 }
 
-/// Forgets what was known in a frame that is no more.
+/// Forgets what no longer holds.
 void Coprocessor::heed(Jump jump) noexcept
 {
     if (jump == Jump::none) {
         return;
     }
     decision_.reset();
-    if (jump == Jump::frame) {
+    if (jump == Jump::estimate) {
+        picture_.forget_measured();
+    } else if (jump == Jump::frame) {
         picture_.forget_places();
     }
 }

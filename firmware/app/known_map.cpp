@@ -64,7 +64,7 @@ void KnownMap::append_to(world::ObstacleTable& table, const std::optional<link::
     if (!placed) {
         return;
     }
-    WorkBudget budget(units::kMeshNode * kMaxOpened);
+    WorkBudget budget(kUnits);
     selection_ = world::append_map(*map_, *placed, own.position, reach, budget, table);
     is_unresolved_ = selection_.exact_within <= own_size;
     is_coarse_ = selection_.exact_within <= own_size + stop;

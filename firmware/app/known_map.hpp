@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "core/base/work_units.hpp"
 #include "core/world/map_obstacles.hpp"
 #include "firmware/app/parameters.hpp"
 #include "firmware/link/global_position.hpp"
@@ -21,6 +22,8 @@ class KnownMap {
 public:
     /// Nodes of the map that are opened in a step, at most.
     static constexpr std::uint32_t kMaxOpened = 16 * static_cast<std::uint32_t>(kMaxMapObstacles);
+    /// What that takes [work units]: of no plan, and of no check.
+    static constexpr std::uint32_t kUnits = units::kMeshNode * kMaxOpened;
     /// Obstacles count as far as the vehicle gets in so many times the look-ahead of conflict prediction: the farthest
     /// that a method plans.
     static constexpr float kLookaheads = 2.0F;

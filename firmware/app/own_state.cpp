@@ -26,14 +26,19 @@ Jump OwnState::take_autopilot(const link::OwnStateReport& report, TimePoint now)
     const TimePoint stamp = report.state.stamp;
     if (stamp > now + kFutureSlack || (autopilot_stamp_ && stamp < *autopilot_stamp_)) {
         ++counts_.own_state_refused;
+        reset_refused_ = reset_refused_ || report.estimator_reset;
         return Jump::none;
     }
-    const bool reset = report.estimator_reset && is_known();
+    const bool reset = (report.estimator_reset || reset_refused_) && is_known();
+    reset_refused_ = false;
     counts_.estimator_resets += reset ? 1U : 0U;
     const Jump jump = use(report, OwnSource::autopilot);
     autopilot_stamp_ = stamp;
     ++counts_.own_states;
-    return reset ? Jump::frame : jump;
+    if (!reset) {
+        return jump;
+    }
+    return jump == Jump::none ? Jump::estimate : Jump::frame;
 }
 
 Jump OwnState::take_bus(const link::OwnStateReport& report, Seconds max_age, float k_sigma, TimePoint now,
@@ -42,15 +47,18 @@ Jump OwnState::take_bus(const link::OwnStateReport& report, Seconds max_age, flo
     const TimePoint stamp = report.state.stamp;
     if (stamp > now + kFutureSlack || stamp < bus_stamp_) {
         ++counts_.bus_states_refused;
+        bus_reset_refused_ = bus_reset_refused_ || report.estimator_reset;
         return Jump::none;
     }
     bus_stamp_ = stamp;
+    const bool says_reset = report.estimator_reset || bus_reset_refused_;
+    bus_reset_refused_ = false;
     if (autopilot_stamp_ && now - *autopilot_stamp_ <= max_age) {
         ++counts_.bus_states_beside;
         compare(report.state, max_age, k_sigma, outbox);
         return Jump::none;
     }
-    const bool reset = report.estimator_reset && source_ == OwnSource::bus;
+    const bool reset = says_reset && source_ == OwnSource::bus;
     counts_.estimator_resets += reset ? 1U : 0U;
     const Jump jump = use(report, OwnSource::bus);
     ++counts_.bus_states;

@@ -14,8 +14,10 @@ namespace jink::app {
 /// What a new own state invalidates.
 enum class Jump : std::uint8_t {
     none,
-    source,  ///< own state comes from elsewhere: the place jumps by what the two differ
-    frame,   ///< the local frame has jumped: no place known before holds
+    source,    ///< own state comes from elsewhere: the place jumps by what the two differ
+    estimate,  ///< the autopilot's estimator was reset: what was placed relative to the own place no longer holds;
+               ///< traffic does, which reports its place on the globe, and the frame's origin stands
+    frame,     ///< the local frame has jumped: no place known before holds
 };
 
 /// Own state, and whose. The autopilot's is what set-points refer to; the bus's stands in where the autopilot's is
@@ -35,6 +37,7 @@ public:
     {
         source_ = OwnSource::none;
         autopilot_stamp_.reset();
+        reset_refused_ = false;
     }
     /// The bus's frame has changed.
     void forget_bus() noexcept { source_ = source_ == OwnSource::bus ? OwnSource::none : source_; }
@@ -69,6 +72,8 @@ private:
     OwnSource source_ = OwnSource::none;
     std::optional<TimePoint> autopilot_stamp_;
     TimePoint bus_stamp_;
+    bool reset_refused_ = false;      ///< the autopilot's report that said so was refused: the next one jumps
+    bool bus_reset_refused_ = false;  ///< the bus's
     bool places_differ_ = false;
 };
 

@@ -31,11 +31,16 @@ void Picture::show_scans_in(ReachPicture& picture) noexcept
     forward_clouds_to(picture);
 }
 
+void Picture::forget_measured() noexcept
+{
+    obstacles_.clear();
+    ground_.reset();
+}
+
 void Picture::forget_places() noexcept
 {
     tracks_.clear();
-    obstacles_.clear();
-    ground_.reset();
+    forget_measured();
 }
 
 /// Tracks that were dropped instead of moved would be missing until their next report. The link has placed or moved
@@ -83,9 +88,9 @@ void Picture::take_ranges(const link::Inbox& inbox, const OwnState& own, const C
         return;
     }
     const Vec3& place = own.measured().position;
-    if (inbox.has_scan) {
+    for (const link::RangeScan& scan : inbox.scans) {
         ++counts_.scans;
-        place_scan(inbox.scan, place, c, obstacles_);
+        place_scan(scan, place, c, obstacles_);
     }
     for (const link::RangeReading& reading : inbox.readings) {
         ++counts_.readings;

@@ -41,6 +41,8 @@ public:
         constraints_.tell(constraints, origin, own, now);
     }
 
+    /// The own place has jumped within the frame: what was measured from it no longer holds.
+    void forget_measured() noexcept;
     /// The frame in which places were known is gone.
     void forget_places() noexcept;
     /// The autopilot has restarted: its home before lies anywhere in the new frame.

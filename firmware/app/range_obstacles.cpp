@@ -17,6 +17,35 @@ constexpr float kLevel = 0.02F;
 
 constexpr std::uint32_t kScanIds = 0x01000000;
 constexpr std::uint32_t kReadingIds = 0x02000000;
+/// Ids of one sensor, and of one direction of a single reading.
+constexpr std::uint32_t kIdsOfScan = 1024;
+constexpr std::uint32_t kIdsOfDirection = 32;
+static_assert(kMaxReturnParts <= kIdsOfDirection);
+/// Directions that single readings tell apart, at most.
+constexpr std::uint32_t kMaxDirections = 128;
+/// Narrowest sector that a link reports [rad].
+constexpr float kNarrowestSector = 0.5F * kPi / 180.0F;
+static_assert(2.0F * kPi / kNarrowestSector < static_cast<float>(kIdsOfScan));
+
+/// Directions `width` [rad] apart, numbered around the horizon of the world, not of the vehicle: what a sensor saw
+/// stays where it was seen when the sensor turns away, until it expires.
+class Directions {
+public:
+    Directions(float width, std::uint32_t least, std::uint32_t most) noexcept
+        : width_(width), count_(std::clamp(static_cast<std::uint32_t>(std::lround(2.0F * kPi / width)), least, most))
+    {
+    }
+    /// Of the direction `step` further counter-clockwise than the one nearest to `yaw` [rad].
+    [[nodiscard]] std::uint32_t number(float yaw, std::int64_t step = 0) const noexcept
+    {
+        const std::int64_t n = count_;
+        return static_cast<std::uint32_t>(((std::lround(yaw / width_) + step) % n + n) % n);
+    }
+
+private:
+    float width_;
+    std::uint32_t count_;
+};
 
 /// A beam of a level sensor.
 struct LevelBeam {
@@ -61,11 +90,15 @@ void place_scan(const link::RangeScan& scan, const Vec3& own, const Configuratio
                 world::ObstacleTable& table) noexcept
 {
     const TimePoint expires = scan.stamp + c.scan_keep;
-    const float half_angle = std::min(0.5F * std::abs(scan.increment), 0.5F * kPi);
+    const float width = std::max(std::abs(scan.increment), kNarrowestSector);
+    const float half_angle = std::min(0.5F * width, 0.5F * kPi);
     const std::size_t parts = return_parts(half_angle);
+    const auto sectors = static_cast<std::uint32_t>(scan.ranges.size());
+    const Directions directions(width, std::max<std::uint32_t>(sectors, 1), kIdsOfScan);
     for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
-        // 72 narrow sectors, or fewer wide ones in parts: at most 72 ids either way.
-        const std::uint32_t first = kScanIds + scan.sensor * 256U + static_cast<std::uint32_t>(i * parts);
+        const auto step = static_cast<std::int64_t>(i) * (scan.increment < 0.0F ? -1 : 1);
+        const std::uint32_t first = kScanIds + scan.sensor * kIdsOfScan +
+                                    directions.number(scan.yaw_first, step) * static_cast<std::uint32_t>(parts);
         const float range = scan.ranges[i];
         if (range == link::RangeScan::kNothing) {
             remove(first, parts, table);
@@ -82,13 +115,14 @@ bool place_reading(const link::RangeReading& reading, const Vec3& own, const Con
                    world::ObstacleTable& table) noexcept
 {
     const TimePoint expires = reading.stamp + c.scan_keep;
-    const std::uint32_t first = kReadingIds + reading.sensor * 32U;
-    static_assert(kMaxReturnParts <= 32);
+    const float yaw = std::atan2(reading.direction.y(), reading.direction.x());
+    const Directions directions(2.0F * std::max(reading.half_angle, kNarrowestSector), 1, kMaxDirections);
+    const std::uint32_t first =
+        kReadingIds + (reading.sensor * kMaxDirections + directions.number(yaw)) * kIdsOfDirection;
     const float steepness = reading.direction.z();
     if (reading.range == link::RangeScan::kNothing) {
         remove(first, kMaxReturnParts, table);
     } else if (std::abs(steepness) <= kLevel) {
-        const float yaw = std::atan2(reading.direction.y(), reading.direction.x());
         place_level({first, yaw, reading.range, std::min(reading.half_angle, 0.5F * kPi)}, own, c.scan_height, expires,
                     table);
     } else if (reading.half_angle > kWidestSteep) {

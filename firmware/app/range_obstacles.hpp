@@ -10,8 +10,9 @@
 
 namespace jink::app {
 
-/// A level scan: each sector that sees something becomes obstacles, each that sees nothing removes its own; sectors
-/// without a reading leave theirs to expire. O(sectors * parts * kMaxObstacles).
+/// A level scan: each sector that sees something becomes obstacles, each that sees nothing removes those of its
+/// direction; sectors without a reading leave theirs to expire, and so does a sensor that has turned away.
+/// O(sectors * parts * kMaxObstacles).
 void place_scan(const link::RangeScan& scan, const Vec3& own, const Configuration& c,
                 world::ObstacleTable& table) noexcept;
 

@@ -7,7 +7,7 @@ using link::FlightMode;
 
 void Takeover::drop(bool by_fault) noexcept
 {
-    diagnostics_.lost_by_fault += by_fault && in_control() ? 1U : 0U;
+    diagnostics_.lost_by_fault += by_fault && follows() ? 1U : 0U;
     if (!by_fault) {
         claim_.kind = Claim::none;
         request_.tries = 0;
@@ -101,7 +101,7 @@ TakeoverOutput Takeover::idle(const TakeoverInput& input, TimePoint now) noexcep
     }
     if (claim_.kind != Claim::none && foreign(input)) {
         // A loss of control has the application ask for the hold mode.
-        if (claim_.kind == Claim::asked || mode_ != FlightMode::hold) {
+        if (!claim_.is_seen || mode_ != FlightMode::hold) {
             return overrule();
         }
         claim_.kind = Claim::none;

@@ -10,10 +10,12 @@ using link::FlightMode;
 /// a pilot chose is not fought: whatever it is, it ends this.
 TakeoverAction Takeover::insist_on_hold(const TakeoverInput& input, TimePoint now) noexcept
 {
-    hold_.due =
-        hold_.due && claim_.kind == Claim::held && !(input.has_report && input.report.mode != FlightMode::external);
+    // Granted but not seen yet: a HEARTBEAT may have been sent before that.
+    const bool is_over = input.has_report && input.report.mode != FlightMode::external &&
+                         (claim_.is_seen || now - request_.asked >= kConfirm);
+    hold_.due = hold_.due && claim_.kind != Claim::none && !is_over;
     hold_.accepted = hold_.accepted || input.mode_accepted;
-    if (!hold_.due || !input.link_alive || hold_.tries >= kHoldTries) {
+    if (!hold_.due || !claim_.is_seen || !input.link_alive || hold_.tries >= kHoldTries) {
         return TakeoverAction::none;
     }
     const Seconds waited = now - hold_.asked;
@@ -137,7 +139,7 @@ TakeoverOutput Takeover::give_up(const TakeoverInput& input, TimePoint now) noex
 /// A fault of ours while streaming.
 TakeoverOutput Takeover::lose(const TakeoverInput& input, TimePoint now) noexcept
 {
-    const bool flown = in_control();
+    const bool flown = follows();
     drop(true);
     if (flown) {
         return {begin_hold(input, now), TakeoverEvent::lost};

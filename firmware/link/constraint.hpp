@@ -39,7 +39,7 @@ enum class ConstraintResult : std::uint8_t {
     kept = 0,          ///< the set lacks other parts
     in_force = 1,      ///< the whole set is valid from now on
     malformed = 2,     ///< length, version, kind or index
-    out_of_range = 3,  ///< non-finite or beyond the limits of world::is_valid
+    out_of_range = 3,  ///< non-finite, beyond the limits of world::is_valid, or not in the frame of the other parts
     too_many = 4,      ///< count above kMaxReportedConstraints
 };
 

@@ -172,9 +172,8 @@ struct Inbox {
     bool has_home = false;  ///< only if both home and the origin are known; a later report replaces the earlier
     Vec3 home = Vec3::Zero();
     bool has_sticks = false;
-    SticksReport sticks;  ///< the newest
-    bool has_scan = false;
-    RangeScan scan;
+    SticksReport sticks;               ///< the newest
+    StaticVector<RangeScan, 2> scans;  ///< the newest of each sensor
     StaticVector<TrackReport, kMaxTrackReports> tracks;
     StaticVector<RangeReading, 16> readings;
     StaticVector<ParamRequest, 16> params;
@@ -187,8 +186,9 @@ struct Inbox {
     {
         has_sticks = false;
         earlier_autopilot.clear();
-        has_own_state = has_bus_state = has_autopilot = has_leg = leg_lost = has_home = has_scan = false;
+        has_own_state = has_bus_state = has_autopilot = has_leg = leg_lost = has_home = false;
         own_state.estimator_reset = bus_state.estimator_reset = false;
+        scans.clear();
         tracks.clear();
         readings.clear();
         params.clear();

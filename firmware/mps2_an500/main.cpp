@@ -2,6 +2,7 @@
 // jink on the MPS2 board with the AN500 image: Cortex-M7, 25 MHz, MAVLink on UART0.
 #include <new>
 
+#include "firmware/app/built_map.hpp"
 #include "firmware/app/work_rate.hpp"
 #include "firmware/cortex_m/flight.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
@@ -30,7 +31,8 @@ constexpr unsigned kUartOverrun = 12;
 constexpr std::uint32_t kBaud = 921600;
 /// Work of a step. The emulated board's clock says nothing; this image stands for a Cortex-M7 from 216 MHz on.
 constexpr app::WorkRate kRate(216'000'000);
-static_assert(kRate.has_time_for(kRate.work()) && avoid::is_valid(kRate.work()));
+constexpr avoid::WorkPerUpdate kWork = app::work_of_image(kRate);
+static_assert(kRate.has_time_for(kWork) && avoid::is_valid(kWork));
 /// A step that is this late has failed.
 constexpr std::uint32_t kWatchdogTicks = kClockHz / 4;
 
@@ -100,7 +102,7 @@ extern "C" void hal::cortex_m::jink_main()
     hal::cortex_m::start_systick(kClockHz / 1000U);
     app::PlanMemory& plans = *new (apart.plans) app::PlanMemory;
     hal::cortex_m::note_second_stack(plans.stack);
-    static_cast<void>(coprocessor.plan_in_slices(plans.plan, kRate.work()));  // valid, as asserted above
+    static_cast<void>(coprocessor.plan_in_slices(plans.plan, kWork));  // valid, as asserted above
     firmware::settle_reach_sets(coprocessor);
     firmware::settle_map(coprocessor);
     const bool passive = firmware::settle_faults(coprocessor, clock);

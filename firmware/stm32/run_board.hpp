@@ -3,6 +3,7 @@
 
 #include <new>
 
+#include "firmware/app/built_map.hpp"
 #include "firmware/app/param_keeper.hpp"
 #include "firmware/app/work_rate.hpp"
 #include "firmware/cortex_m/flight.hpp"
@@ -103,7 +104,8 @@ template <class Board>
 [[noreturn]] void run_board() noexcept
 {
     constexpr app::WorkRate kRate(Board::kClock);
-    static_assert(kRate.has_time_for(kRate.work()) && avoid::is_valid(kRate.work()));
+    constexpr avoid::WorkPerUpdate kWork = app::work_of_image(kRate);
+    static_assert(kRate.has_time_for(kWork) && avoid::is_valid(kWork));
     const hal::stm32::ResetCause cause = Board::take_reset_cause();
     const hal::stm32::Clocks clocks = Board::start();
     hal::stm32::start_microseconds(MappedRegisters{Board::kTimer}, clocks.timer);
@@ -131,7 +133,7 @@ template <class Board>
     keeper.start(coprocessor);
     app::PlanMemory& plans = *new (apart.plans) app::PlanMemory;
     hal::cortex_m::note_second_stack(plans.stack);
-    static_cast<void>(coprocessor.plan_in_slices(plans.plan, kRate.work()));  // valid, as asserted above
+    static_cast<void>(coprocessor.plan_in_slices(plans.plan, kWork));  // valid, as asserted above
     settle_reach_sets(coprocessor);
     settle_map(coprocessor);
     const bool passive = settle_faults(coprocessor, clock);

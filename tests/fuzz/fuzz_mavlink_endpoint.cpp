@@ -66,8 +66,8 @@ void check_inbox(const Inbox& inbox, TimePoint now)
         JINK_FUZZ_CHECK(std::isfinite(s.sigma_position) && s.sigma_position >= 0.0F);
         JINK_FUZZ_CHECK(std::isfinite(s.sigma_velocity) && s.sigma_velocity >= 0.0F);
     }
-    if (inbox.has_scan) {
-        check_scan(inbox.scan, now);
+    for (const RangeScan& scan : inbox.scans) {
+        check_scan(scan, now);
     }
     JINK_FUZZ_CHECK(!inbox.has_home || inbox.home.norm() <= kFar);
     if (inbox.has_leg) {

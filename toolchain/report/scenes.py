@@ -27,7 +27,7 @@ class Scene:
     retries: int
     free: bool  # parameters other than those of the candidates as well
     solids: bool = False  # obstacles of any shape; otherwise the co-processor's obstacles of scan returns
-                          # (firmware/app/echo.cpp)
+                          # (firmware/app/range_return.cpp)
     mixed: bool = False  # `threats` counts tracks and obstacles together
     study: bool = False  # Pinheiro's run-time study: 5 m/s along a level leg, a static threat of 1 m on the leg 10 m
                          # ahead

@@ -92,10 +92,17 @@ void Endpoint::on_obstacle_distance(const Context& c) noexcept
         ++diagnostics_.no_origin;
         return;
     }
-    if (c.inbox.has_scan) {  // the inbox holds one scan: the newer replaces it
+    auto& scans = c.inbox.scans;
+    const auto same =
+        std::find_if(scans.begin(), scans.end(), [&](const RangeScan& s) { return s.sensor == m.sensor_type; });
+    const bool is_new = same == scans.end();
+    if (!is_new || scans.size() == scans.capacity()) {  // the newer of a sensor replaces its former
         ++diagnostics_.inbox_full;
     }
-    RangeScan& scan = c.inbox.scan;
+    if (is_new && !scans.try_push_back({})) {
+        return;
+    }
+    RangeScan& scan = is_new ? scans.back() : *same;
     scan.stamp = c.now;
     scan.sensor = m.sensor_type;
     scan.min_range = static_cast<float>(m.min_distance) * kCentimetre;
@@ -113,7 +120,6 @@ void Endpoint::on_obstacle_distance(const Context& c) noexcept
                                                   : static_cast<float>(std::max(d, m.min_distance)) * kCentimetre;
         scan.ranges.unchecked_push_back(range);
     }
-    c.inbox.has_scan = true;
 }
 
 void Endpoint::on_distance_sensor(const Context& c) noexcept

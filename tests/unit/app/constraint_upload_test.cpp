@@ -132,6 +132,27 @@ TEST(ConstraintUpload, AnotherSetSenderOrCountAbandonsAnIncompleteOne)
     EXPECT_FALSE(upload.is_new());
 }
 
+/// Merged, as a board does with more than two, they would all be placed in one of the frames.
+TEST(ConstraintUpload, APartInAnotherFrameThanTheOthersIsRefused)
+{
+    const auto on_globe = [](ConstraintPart part) {
+        part.constraint.about = link::GlobalPosition{473977420, 85465940, 0};
+        return part;
+    };
+    ConstraintUpload upload;
+    EXPECT_EQ(upload.take(part_of(1, 0, 3), kAt), ConstraintResult::kept);
+    EXPECT_EQ(upload.take(on_globe(part_of(1, 1, 3)), kAt), ConstraintResult::out_of_range);
+    EXPECT_EQ(upload.diagnostics().refused, 1U);
+    EXPECT_FALSE(upload.is_new());
+    EXPECT_EQ(upload.take(part_of(1, 1, 3), kAt), ConstraintResult::kept) << "mended";
+    EXPECT_EQ(upload.take(part_of(1, 2, 3), kAt), ConstraintResult::in_force);
+    upload.mark_in_force();
+    EXPECT_EQ(upload.take(on_globe(part_of(2, 0, 2)), kAt), ConstraintResult::kept) << "another set";
+    EXPECT_EQ(upload.take(part_of(2, 1, 2), kAt), ConstraintResult::out_of_range);
+    EXPECT_EQ(upload.take(part_of(2, 0, 2), kAt), ConstraintResult::kept) << "the only part so far, again";
+    EXPECT_EQ(upload.take(part_of(2, 1, 2), kAt), ConstraintResult::in_force);
+}
+
 TEST(ConstraintUpload, AnEmptySetOpensEverything)
 {
     ConstraintUpload upload;

@@ -368,7 +368,7 @@ TEST_F(CoprocessorRequests, CountsStepsOwnStatesAndRefusesOldOnes)
     EXPECT_EQ(f.coprocessor.own().position, position);
 }
 
-TEST_F(CoprocessorRequests, EstimatorResetForgetsPlacesInTheOldFrame)
+TEST_F(CoprocessorRequests, EstimatorResetForgetsObstaclesAndKeepsTraffic)
 {
     f.own_state = false;
     f.ring = 20.0F;
@@ -387,7 +387,7 @@ TEST_F(CoprocessorRequests, EstimatorResetForgetsPlacesInTheOldFrame)
     f.feed(jumped);
     f.fly(1);
     EXPECT_EQ(counted().estimator_resets, 1U);
-    EXPECT_EQ(f.last.tracks, 0U);
+    EXPECT_GT(f.last.tracks, 0U);
     EXPECT_EQ(f.last.obstacles, 0U);
 }
 

@@ -109,7 +109,7 @@ TEST(Warnings, OfAnObstacleCarryItsId)
         t->step();
     }
     ASSERT_EQ(t->link.warnings.size(), 1U);
-    EXPECT_EQ(t->link.warnings[0].id, 0x02000000U + 3U * 32U);
+    EXPECT_EQ(t->link.warnings[0].id, 0x02000000U + 3U * 128U * 32U);
     expect_true_of(t->link.warnings[0], t->last);
     EXPECT_EQ(t->said("jink: conflict, obstacle in "), 1);
 }
@@ -228,8 +228,7 @@ TEST(Warnings, SayThatItBrakesInFrontOfAWall)
     const float wall = t->own.position.x() + 60.0F;
     for (int i = 0; i < 1500 && actions.hover < 2; ++i) {
         if (i % 5 == 0) {
-            t->link.next.has_scan = true;
-            t->link.next.scan = scan_of(*t, wall);
+            t->link.next.scans.unchecked_push_back(scan_of(*t, wall));
         }
         t->step();
         actions.check(*t);

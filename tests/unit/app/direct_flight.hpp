@@ -212,8 +212,7 @@ private:
             }
         }
         if (wall_at > 0.0F && ticks_ % 5 == 0) {
-            in.has_scan = true;
-            in.scan = wall();
+            in.scans.unchecked_push_back(wall());
         }
     }
     /// A level scan of 72 sectors and 40 m, and the plane x = wall_at.

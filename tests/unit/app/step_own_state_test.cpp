@@ -117,7 +117,8 @@ TEST(StepOwnState, WithoutOneNothingIsSeen)
     EXPECT_FALSE(b->last.guidance.conflict.has_value());
 }
 
-TEST(StepOwnState, AResetOfTheEstimatorForgetsPlaces)
+/// Traffic reports its place on the globe: an aircraft that was forgotten would be missing until its next report.
+TEST(StepOwnState, AResetOfTheEstimatorForgetsWhatWasMeasuredFromTheOwnPlaceAndKeepsTraffic)
 {
     const auto b = exact_bench();
     b->hear_autopilot();
@@ -128,12 +129,38 @@ TEST(StepOwnState, AResetOfTheEstimatorForgetsPlaces)
     b->hear_mast(1, b->position + Vec3(0.0F, 40.0F, 0.0F));
     b->step();
     ASSERT_EQ(b->last.tracks, 1U);
+    b->wire.in.scans.unchecked_push_back({});
+    b->wire.in.scans.back().stamp = b->next();
+    b->wire.in.scans.back().increment = 0.1F;
+    b->wire.in.scans.back().ranges.unchecked_push_back(20.0F);
+    b->hear_own();
+    b->step();
+    ASSERT_EQ(b->last.obstacles, 1U);
     b->hear_own().estimator_reset = true;
     b->step();
     EXPECT_EQ(b->counted().estimator_resets, 1U);
-    EXPECT_EQ(b->last.tracks, 0U);
-    EXPECT_FALSE(b->last.guidance.conflict.has_value());
+    EXPECT_EQ(b->last.obstacles, 0U);
+    EXPECT_EQ(b->last.tracks, 1U);
+    EXPECT_TRUE(b->last.guidance.conflict.has_value());
     EXPECT_EQ(b->last.faults, 0U) << "the new one is known";
+}
+
+TEST(StepOwnState, AResetInARefusedReportCountsWithTheNextOne)
+{
+    const auto b = exact_bench();
+    b->fly(2);
+    link::OwnStateReport& refused = b->hear_own();
+    refused.estimator_reset = true;
+    refused.state.stamp = refused.state.stamp + 5.0F;
+    b->step();
+    EXPECT_EQ(b->counted().own_state_refused, 1U);
+    EXPECT_EQ(b->counted().estimator_resets, 0U);
+    b->hear_own();
+    b->step();
+    EXPECT_EQ(b->counted().estimator_resets, 1U);
+    b->hear_own();
+    b->step();
+    EXPECT_EQ(b->counted().estimator_resets, 1U) << "once";
 }
 
 TEST(StepOwnState, ThatIsNotFiniteSteersNothing)

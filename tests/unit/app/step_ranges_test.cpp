@@ -46,9 +46,8 @@ protected:
     }
     [[nodiscard]] RangeScan& scan(std::initializer_list<float> ranges, float yaw_first, float increment)
     {
-        bench->wire.in.has_scan = true;
-        RangeScan& s = bench->wire.in.scan;
-        s = {};
+        bench->wire.in.scans.unchecked_push_back({});
+        RangeScan& s = bench->wire.in.scans.back();
         s.stamp = bench->next();
         s.yaw_first = yaw_first;
         s.increment = increment;

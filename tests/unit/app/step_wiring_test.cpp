@@ -200,10 +200,11 @@ TEST(StepWiring, AJumpOfTheFrameForgetsTheDoubtedLegAndTheObstaclesOfAScan)
     b.wire.in.leg.leg = {b.position, b.position + Vec3(500.0F, 0.0F, 0.0F), 5.0F};
     b.fly(100);
     ASSERT_FALSE(b.coprocessor.nominal_paths().believes_leg()) << "north, and the leg leads east";
-    b.wire.in.has_scan = true;
-    b.wire.in.scan.stamp = b.next();
-    b.wire.in.scan.increment = 0.1F;
-    b.wire.in.scan.ranges.unchecked_push_back(20.0F);
+    b.wire.in.scans.unchecked_push_back({});
+    link::RangeScan& scan = b.wire.in.scans.back();
+    scan.stamp = b.next();
+    scan.increment = 0.1F;
+    scan.ranges.unchecked_push_back(20.0F);
     b.fly(1);
     ASSERT_EQ(b.last.obstacles, 1U);
     b.hear_own().estimator_reset = true;

@@ -61,6 +61,39 @@ TEST(TakeoverHold, AcceptedButStillNotSeenAfterASecondIsAskedForAgain)
     EXPECT_EQ(b.step(fault(Beat::external)).action, TakeoverAction::request_hold);
 }
 
+/// The vehicle has flown our set-points since the accepted answer.
+TEST(TakeoverHold, IsAskedForWhereAFaultComesBetweenTheAcceptedAnswerAndItsHeartbeat)
+{
+    for (const bool late : {false, true}) {
+        Bench b;
+        b.step(wants(Beat::former));
+        ASSERT_EQ(b.step(wants(Beat::none, 0.1F)).action, TakeoverAction::request_external);
+        b.step({true, true, Beat::none, 0.05F, false, true});
+        ASSERT_TRUE(b.takeover.follows());
+        const TakeoverOutput out = b.step(fault(Beat::none));
+        EXPECT_EQ(out.event, TakeoverEvent::lost);
+        EXPECT_EQ(out.action, TakeoverAction::none) << "nobody has seen the external mode yet";
+        if (late) {
+            EXPECT_EQ(b.step(fault(Beat::former)).action, TakeoverAction::none) << "sent before the answer, perhaps";
+        }
+        EXPECT_EQ(b.step(fault(Beat::external, 0.3F)).action, TakeoverAction::request_hold);
+        EXPECT_EQ(b.takeover.diagnostics().lost_by_fault, 1U);
+        EXPECT_EQ(b.step(fault(Beat::hold, 0.3F)).action, TakeoverAction::none);
+        EXPECT_EQ(b.step(fault(Beat::external, 5.0F)).action, TakeoverAction::none) << "somebody else's";
+    }
+}
+
+TEST(TakeoverHold, IsNotAskedForWhereTheGrantedModeNeverShows)
+{
+    Bench b;
+    b.step(wants(Beat::former));
+    b.step(wants(Beat::none, 0.1F));
+    b.step({true, true, Beat::none, 0.05F, false, true});
+    b.step(fault(Beat::none));
+    EXPECT_EQ(b.step(fault(Beat::former, Takeover::kConfirm)).action, TakeoverAction::none);
+    EXPECT_EQ(b.step(fault(Beat::external, 0.5F)).action, TakeoverAction::none) << "somebody else's";
+}
+
 TEST(TakeoverHold, AnyOtherModeSeenEndsIt)
 {
     for (const Beat beat : {Beat::hold, Beat::manual, Beat::former, Beat::disarmed}) {

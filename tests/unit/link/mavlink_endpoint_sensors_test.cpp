@@ -160,8 +160,8 @@ TEST_F(MavlinkEndpointSensors, BodyScanTurnsWithTheVehicle)
     m.distances[0] = 1000;
     m.distances[18] = 2000;
     from(kSystem, 154, m);
-    ASSERT_TRUE(inbox->has_scan);
-    const RangeScan& s = inbox->scan;
+    ASSERT_EQ(inbox->scans.size(), 1U);
+    const RangeScan& s = inbox->scans[0];
     EXPECT_EQ(s.ranges.size(), 72U);
     EXPECT_NEAR(s.yaw_first, 0.0F, 1e-5F);
     EXPECT_NEAR(s.increment, -5.0F * kDegree, 1e-6F);
@@ -182,7 +182,7 @@ TEST_F(MavlinkEndpointSensors, NorthUpScansDoNotTurn)
         m.frame = frame;
         m.angle_offset = 30.0F;
         from(kSystem, 154, m);
-        EXPECT_NEAR(inbox->scan.yaw_first, kPi / 2 - 30.0F * kDegree, 1e-5F);
+        EXPECT_NEAR(inbox->scans[0].yaw_first, kPi / 2 - 30.0F * kDegree, 1e-5F);
     }
 }
 
@@ -196,7 +196,7 @@ TEST_F(MavlinkEndpointSensors, DistancesAtTheEdges)
     m.distances[4] = 4001;  // nothing
     m.distances[5] = 65534;
     from(kSystem, 154, m);
-    const auto& r = inbox->scan.ranges;
+    const auto& r = inbox->scans[0].ranges;
     EXPECT_FLOAT_EQ(r[0], 0.2F) << "touching must not vanish";
     EXPECT_FLOAT_EQ(r[1], 0.2F);
     EXPECT_FLOAT_EQ(r[2], 0.2F);
@@ -222,9 +222,9 @@ TEST_F(MavlinkEndpointSensors, IncrementsOfEveryKind)
         m.increment_f = c.increment_f;
         clear();
         from(kSystem, 154, m);
-        ASSERT_TRUE(inbox->has_scan);
-        EXPECT_EQ(inbox->scan.ranges.size(), c.sectors);
-        EXPECT_NEAR(inbox->scan.increment, c.expected * kDegree, 1e-6F);
+        ASSERT_EQ(inbox->scans.size(), 1U);
+        EXPECT_EQ(inbox->scans[0].ranges.size(), c.sectors);
+        EXPECT_NEAR(inbox->scans[0].increment, c.expected * kDegree, 1e-6F);
     }
     EXPECT_EQ(count().out_of_range, 0U);
 }
@@ -248,7 +248,7 @@ TEST_F(MavlinkEndpointSensors, ScansThatMeanNothingAreRefused)
     refused([](ObstacleDistance& m) { m.frame = 20; });
     refused([](ObstacleDistance& m) { m.max_distance = 0; });
     refused([](ObstacleDistance& m) { m.min_distance = 4001; });
-    EXPECT_FALSE(inbox->has_scan);
+    EXPECT_TRUE(inbox->scans.empty());
     EXPECT_EQ(count().not_finite, 2U);
 }
 
@@ -257,31 +257,48 @@ TEST_F(MavlinkEndpointSensors, BodyRangesNeedAFreshHeading)
     wait(0.9F);
     from(kSystem, 154, scan());
     from(kSystem, 154, reading());
-    EXPECT_TRUE(inbox->has_scan);
+    EXPECT_EQ(inbox->scans.size(), 1U);
     EXPECT_EQ(inbox->readings.size(), 1U);
     wait(0.2F);
     clear();
     from(kSystem, 154, scan());
     from(kSystem, 154, reading());
-    EXPECT_FALSE(inbox->has_scan) << "nobody knows where it looked";
+    EXPECT_TRUE(inbox->scans.empty()) << "nobody knows where it looked";
     EXPECT_TRUE(inbox->readings.empty());
     EXPECT_EQ(count().no_origin, 2U);
     ObstacleDistance north = scan();
     north.frame = 1;
     from(kSystem, 154, north);
-    EXPECT_TRUE(inbox->has_scan);
+    EXPECT_EQ(inbox->scans.size(), 1U);
     DistanceSensor down = reading();
     down.orientation = 25;
     from(kSystem, 154, down);
     EXPECT_EQ(inbox->readings.size(), 1U);
 }
 
-TEST_F(MavlinkEndpointSensors, ASecondScanInATickIsCounted)
+TEST_F(MavlinkEndpointSensors, ScansOfTwoSensorsInATickAreBothKeptAndASecondOfOneReplacesItsFirst)
 {
-    from(kSystem, 154, scan());
+    ObstacleDistance front = scan();
+    ObstacleDistance rear = scan();
+    front.sensor_type = 0;
+    rear.sensor_type = 1;
+    front.distances[0] = 1000;
+    rear.distances[0] = 2000;
+    from(kSystem, 154, front);
+    from(kSystem, 154, rear);
     EXPECT_EQ(count().inbox_full, 0U);
-    from(kSystem, 155, scan());
+    front.distances[0] = 900;
+    from(kSystem, 155, front);
     EXPECT_EQ(count().inbox_full, 1U);
+    ASSERT_EQ(inbox->scans.size(), 2U);
+    EXPECT_FLOAT_EQ(inbox->scans[0].ranges[0], 9.0F);
+    EXPECT_FLOAT_EQ(inbox->scans[1].ranges[0], 20.0F);
+    EXPECT_EQ(inbox->scans[0].ranges.size(), 72U) << "nothing of the former one";
+    ObstacleDistance third = scan();
+    third.sensor_type = 2;
+    from(kSystem, 154, third);
+    EXPECT_EQ(count().inbox_full, 2U);
+    EXPECT_EQ(inbox->scans.size(), 2U);
 }
 
 TEST_F(MavlinkEndpointSensors, ReadingsLookWhereTheirOrientationSays)
@@ -365,7 +382,7 @@ TEST_F(MavlinkEndpointSensors, RangesOfAnotherSystemAreIgnored)
 {
     from(9, 154, scan());
     from(9, 154, reading());
-    EXPECT_FALSE(inbox->has_scan);
+    EXPECT_TRUE(inbox->scans.empty());
     EXPECT_TRUE(inbox->readings.empty());
     EXPECT_EQ(count().frames_ignored, 2U);
 }

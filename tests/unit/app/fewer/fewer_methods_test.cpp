@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "firmware/app/reach_sets.hpp"
 #include "tests/unit/app/step_bench.hpp"
 
 namespace jink::app::test {
@@ -77,6 +78,11 @@ TEST(FewerMethods, ARefusalIsAnsweredWithTheValueThatHoldsAndSaid)
     bench.fly(1);
     EXPECT_EQ(bench.counted().params_set, 1U);
     EXPECT_EQ(bench.said("jink: JNK_METHODS refused, method not built in"), 1);
+}
+
+TEST(FewerMethods, TheSetsAreThoseThatTheBuildNames)
+{
+    EXPECT_EQ(&reach_sets(), &reach::kDefaultReducedSets);
 }
 
 TEST(FewerMethods, ReachSetsPlanByThemselves)

@@ -174,6 +174,37 @@ TEST(Rejoining, CeilingAndKeepInAreKept)
     EXPECT_FALSE(g.wants_control);
 }
 
+/// The leg leads out of the keep-in radius; what may be flown of the way back goes along the boundary, and an obstacle
+/// stands there that the way back itself passes.
+TEST(Rejoining, AWayBackThatABoundBendsStopsBeforeAnObstacle)
+{
+    constexpr float kBoundary = 58.5F;
+    for (const float degrees : {8.0F, 12.0F, 16.0F}) {
+        Flight f;
+        f.scene.leg(Vec3(0, -15, 30), Vec3(300, -15, 30), 5.0F);
+        f.scene.airspace.has_keep_in = true;
+        f.scene.airspace.keep_in_radius = 60.0F;
+        const auto on_boundary = [&](float angle) {
+            return Vec3(kBoundary * std::cos(angle), kBoundary * std::sin(angle), 30.0F);
+        };
+        const float begin = std::atan2(-26.2F, 52.3F);
+        f.scene.own.position = on_boundary(begin);
+        f.scene.own.velocity = Vec3(2.0F, 4.0F, 0.0F);
+        const Vec3 pole = on_boundary(begin + degrees * kPi / 180.0F);
+        f.scene.obstacle(geometry::make_sphere(pole, 1.0F));
+        FakeMethod method = never();
+        Supervisor supervisor(quick(), method);
+        for (int i = 0; i < 200; ++i) {
+            const vehicle::VehicleState& own = f.scene.own;
+            const world::Reference motion({own.position, own.position + 8.0F * own.velocity, own.velocity.norm()});
+            const Guidance g = supervisor.update(f.scene.situation(), true, &motion);
+            f.pass(g.velocity, 0.05F);
+            const Vec3 apart = (f.scene.own.position - pole).cwiseAbs();
+            ASSERT_GE(std::max(apart.x(), apart.y()), 1.9F) << degrees << " degrees, step " << i;
+        }
+    }
+}
+
 /// Seconds until a vehicle gives back control that begins to rejoin the leg at `position`; -1: not within a minute.
 float gives_back_after(vehicle::VehicleKind kind, const Vec3& position)
 {
