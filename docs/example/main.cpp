@@ -9,7 +9,7 @@ int main()
     using namespace jink;
     const vehicle::VehicleLimits limits;  // 5 m/s cruise, 3 m/s climb, a safety box of 2 m
     const vehicle::Airframe airframe;
-    const world::Reference way({{0, 0, 30}, {100, 0, 30}, 5.0F});  // a level leg eastwards
+    const world::Reference reference({{0, 0, 30}, {100, 0, 30}, 5.0F});  // a level leg eastwards
     world::Airspace airspace;
     airspace.has_floor = true;
     airspace.floor = 2.0F;
@@ -25,7 +25,7 @@ int main()
     avoid::Supervisor supervisor{avoid::Settings{}, planner};
     const world::FlightRules rules;  // 8 s of look-ahead, 3 standard deviations
     static world::ThreatSet threats;
-    world::Situation now{{}, own, limits, airframe, way, rules};
+    world::Situation now{{}, own, limits, airframe, reference, rules};
     if (threats.collect(now, {{&intruder, 1}, {}, airspace})) {
         now.threats = threats.all();  // else everything counts as contact
     }

@@ -52,6 +52,11 @@ std::optional<Place> read_place(const Reader& reader, const YAML::Node& node, co
             complaint_at(node.Mark(), reader.file, where + ": a list of two numbers is wanted"));
         return std::nullopt;
     }
+    if (!node.Tag().empty() && node.Tag() != "?" && node.Tag() != "!") {
+        reader.complaints.push_back(
+            complaint_at(node.Mark(), reader.file, where + ": no tag is wanted, such as " + in_quotes(node.Tag())));
+        return std::nullopt;
+    }
     const Range first = reader.is_global ? kLatitude : kLocal;
     const Range second = reader.is_global ? kLongitude : kLocal;
     const bool good = element(node[0], first, where + "[0]", reader.file, reader.complaints).has_value() &&

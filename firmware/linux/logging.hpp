@@ -24,8 +24,8 @@ public:
     TwoOutputs(flightlog::Output& files, flightlog::Output& page) : files_(files), page_(page) {}
     bool add(std::span<const std::byte> messages, std::uint32_t count, flightlog::Records records) noexcept override
     {
-        static_cast<void>(page_.add(messages, count, records));
-        return files_.add(messages, count, records);
+        const bool is_shown = page_.add(messages, count, records);
+        return files_.add(messages, count, records) && is_shown;
     }
     void lose() noexcept override
     {

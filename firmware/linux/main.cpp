@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // jinkd: the co-processor on Linux. One 50 Hz loop; Coprocessor::step() makes all decisions. One thread of lower
 // priority does all blocking work (status lines, messages, files): background.hpp.
+#include <fcntl.h>
 #include <sched.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -106,6 +108,18 @@ void ignore_what_outputs_raise()
 {
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
+}
+
+/// A standard stream that is closed becomes /dev/null: otherwise a device gets its descriptor, and what is printed
+/// there. False: there is no /dev/null for it.
+bool open_standard_streams()
+{
+    for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream) {
+        if (::fcntl(stream, F_GETFD) < 0 && ::open("/dev/null", O_RDWR) != stream) {
+            return false;
+        }
+    }
+    return true;
 }
 
 void catch_signals()
@@ -315,6 +329,7 @@ int run(const Options& options, const app::Parameters& initial, const files::Par
             go_realtime(options.realtime);  // this thread alone
         }
         Loop loop{options, clock, devices, assembly, flight_log, housekeeping, background, status, watched};
+        host::notify_ready(devices.watchdog);
         loop.run();
         loop.stop();
         counts = background.counts();
@@ -330,6 +345,9 @@ int run(const Options& options, const app::Parameters& initial, const files::Par
 
 int main(int argc, char** argv)
 {
+    if (!open_standard_streams()) {
+        return kRefused;
+    }
     host::Options options;
     CLI::App cli{host::kAbout};
     host::add_options(cli, options);
@@ -341,27 +359,7 @@ int main(int argc, char** argv)
 
     ignore_what_outputs_raise();
     catch_signals();
-    const bool has_serial = cli.count("--serial") > 0;
-    const bool has_link = cli.count("--link") > 0;
-    const bool has_can = cli.count("--can") > 0;
-    if (!has_serial && !has_link && !has_can) {
-        complain_now("--serial, --link or --can is needed");
-        return kRefused;
-    }
-    if (host::is_link(options.serial)) {
-        complain_now("--serial " + options.serial + ": that is no device; --link " + options.serial);
-        return kRefused;
-    }
-    if (has_can && options.can.empty()) {
-        complain_now("--can: the name of an interface is needed");
-        return kRefused;
-    }
-    if ((has_serial && options.serial.empty()) || (has_link && options.link.empty())) {
-        complain_now("--serial, --link: the name of a line is needed");
-        return kRefused;
-    }
-    if (cli.count("--page") > 0 && options.page.address.empty()) {
-        complain_now("--page: [ADDRESS:]PORT is needed");
+    if (!host::check_names(cli, options)) {
         return kRefused;
     }
     files::Complaints complaints;

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "firmware/linux/options.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
 #include <CLI/CLI.hpp>
 
 #include "firmware/app/work_rate.hpp"
+#include "firmware/linux/ports.hpp"
 
 namespace jink::host {
 
@@ -72,6 +78,34 @@ void add_options(CLI::App& cli, Options& options)
     cli.add_option("--realtime", options.realtime, "SCHED_FIFO priority and locked memory; 0: off")
         ->check(CLI::Range(0, 99));
     cli.add_flag("--quiet", options.quiet, "errors only");
+}
+
+bool check_names(const CLI::App& cli, const Options& options)
+{
+    const bool has_serial = cli.count("--serial") > 0;
+    const bool has_link = cli.count("--link") > 0;
+    const bool has_can = cli.count("--can") > 0;
+    if (!has_serial && !has_link && !has_can) {
+        complain_now("--serial, --link or --can is needed");
+        return false;
+    }
+    if (is_link(options.serial)) {
+        complain_now("--serial " + options.serial + ": that is no device; --link " + options.serial);
+        return false;
+    }
+    // A variable of a script that is not set: without its map or key jinkd must not fly.
+    for (const CLI::Option* const option : cli.get_options()) {
+        const std::vector<std::string>& given = option->results();
+        if (std::find(given.begin(), given.end(), std::string()) != given.end()) {
+            complain_now(option->get_name() + ": a value is needed, this one is empty");
+            return false;
+        }
+    }
+    if (!std::isfinite(options.status_period)) {
+        complain_now("--status-period: seconds from 0 to 3600 are needed");
+        return false;
+    }
+    return true;
 }
 
 }  // namespace jink::host

@@ -41,5 +41,8 @@ inline constexpr const char* kAbout =
     "jinkd: collision avoidance beside a PX4 or ArduPilot autopilot, over MAVLink on a serial line, with\n"
     "sensors and traffic on a DroneCAN bus, or over MAVLink through that bus. Runs until SIGTERM or SIGINT.";
 void add_options(CLI::App& cli, Options& options);
+/// What CLI11 does not check: a line to the autopilot, and no empty names. False, with a message, where jinkd must not
+/// start.
+[[nodiscard]] bool check_names(const CLI::App& cli, const Options& options);
 
 }  // namespace jink::host

@@ -153,6 +153,10 @@ std::optional<ParamValues> apply_param_text(std::string_view text, const std::st
         const std::size_t end = text.find('\n');
         std::string_view line = text.substr(0, end);
         text = end == std::string_view::npos ? std::string_view{} : text.substr(end + 1);
+        if (const std::size_t zero = line.find('\0'); zero != std::string_view::npos) {
+            complaints.push_back({number, zero + 1, "a zero byte: the file has to be text", file});
+            break;
+        }
         line = trimmed(line.substr(0, line.find('#')));
         if (line.empty()) {
             continue;

@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 
 #include "core/base/crc.hpp"
 
@@ -45,6 +46,20 @@ bool write_all(int file, std::string_view text)
         }
     }
     return true;
+}
+
+/// A device or a pipe is written, not replaced.
+std::string write_into(const std::string& path, std::string_view text)
+{
+    const int file = ::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    if (file < 0) {
+        return reason("cannot be opened");
+    }
+    std::string why = write_all(file, text) ? std::string{} : reason("cannot be written");
+    if (::close(file) != 0 && why.empty()) {
+        why = reason("cannot be closed");
+    }
+    return why;
 }
 
 /// Makes the new name survive a power cut.
@@ -102,7 +117,15 @@ std::optional<std::string_view> without_checksum(std::string_view text)
 
 std::string replace_file(const std::string& path, std::string_view text, FileAccess access)
 {
-    const std::string fresh = path + ".new";
+    namespace fs = std::filesystem;
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (fs::exists(status) && !fs::is_regular_file(status)) {
+        return access == FileAccess::owner_only ? "is no regular file" : write_into(path, text);
+    }
+    const fs::path resolved = fs::exists(status) ? fs::canonical(path, error) : fs::path(path);
+    const std::string target = error || resolved.empty() ? path : resolved.string();
+    const std::string fresh = target + ".new";
     const auto mode = static_cast<mode_t>(access);
     const int file = ::open(fresh.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC, mode);
     if (file < 0) {
@@ -120,14 +143,14 @@ std::string replace_file(const std::string& path, std::string_view text, FileAcc
     if (::close(file) != 0 && why.empty()) {
         why = reason("cannot be closed");
     }
-    if (why.empty() && ::rename(fresh.c_str(), path.c_str()) != 0) {
+    if (why.empty() && ::rename(fresh.c_str(), target.c_str()) != 0) {
         why = reason("cannot be renamed");
     }
     if (!why.empty()) {
         ::unlink(fresh.c_str());
         return why;
     }
-    return sync_folder(path) ? std::string{} : reason("the folder cannot be synchronised");
+    return sync_folder(target) ? std::string{} : reason("the folder cannot be synchronised");
 }
 
 StateLoad apply_state(std::string_view text, const std::string& file, app::Parameters& parameters,
@@ -164,7 +187,7 @@ StateLoad apply_state(std::string_view text, const std::string& file, app::Param
 StateLoad load_state(const std::string& path, app::Parameters& parameters, Complaints& complaints)
 {
     std::error_code error;
-    if (!std::filesystem::exists(path, error)) {
+    if (!std::filesystem::exists(path, error) && !error) {
         return {};
     }
     const std::optional<std::string> text = read_text_file(path, complaints);

@@ -25,7 +25,8 @@ namespace jink::files {
 enum class FileAccess : unsigned { everyone_reads = 0644, owner_only = 0600 };
 
 /// Replaces a file as a whole: a new file beside it (PATH.new), fsync, rename, fsync of the folder. A power cut or a
-/// kill at any point leaves the former content or the new one. @return the error; empty on success
+/// kill at any point leaves the former content or the new one. A symbolic link keeps its name, its target is replaced.
+/// A device or a pipe is written into, where everyone may read. @return the error; empty on success
 [[nodiscard]] std::string replace_file(const std::string& path, std::string_view text,
                                        FileAccess access = FileAccess::everyone_reads);
 
@@ -40,7 +41,7 @@ struct StateLoad {
 StateLoad apply_state(std::string_view text, const std::string& file, app::Parameters& parameters,
                       Complaints& complaints);
 
-/// The same from a file. A missing file is no error.
+/// The same from a file. A missing file is no error; a file that cannot be opened is left out with a complaint.
 StateLoad load_state(const std::string& path, app::Parameters& parameters, Complaints& complaints);
 
 }  // namespace jink::files

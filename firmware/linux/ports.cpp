@@ -269,11 +269,16 @@ bool open_watchdog(hal::LinuxWatchdog& watchdog, const std::string& device)
         return false;
     }
     if (const char* address = std::getenv("NOTIFY_SOCKET"); address != nullptr) {
-        if (watchdog.open_notify(address) != hal::WatchdogStatus::ok || !watchdog.notify_ready()) {
-            complain_now("the service manager's socket cannot be used");
-        }
+        static_cast<void>(watchdog.open_notify(address));  // notify_ready says it
     }
     return true;
+}
+
+void notify_ready(hal::LinuxWatchdog& watchdog)
+{
+    if (std::getenv("NOTIFY_SOCKET") != nullptr && !watchdog.notify_ready()) {
+        complain_now("the service manager's socket cannot be used");
+    }
 }
 
 }  // namespace jink::host

@@ -163,7 +163,7 @@ std::optional<SigningState> load_signing(const std::string& key_file, const std:
     }
     out.time = clock;
     std::error_code error;
-    if (store.empty() || !std::filesystem::exists(store, error)) {
+    if (store.empty() || (!std::filesystem::exists(store, error) && !error)) {
         return out;
     }
     const std::optional<std::string> text = read_text_file(store, complaints);

@@ -43,10 +43,10 @@ struct SigningState {
 /// @param key_file  of --signing-key; may be empty
 /// @param store     the signing state; may be empty, or not there yet
 /// @param clock     time of the system clock [10 us since 2015]; 0: unknown
-/// @return nothing, with complaints, if the key file is not good, or if the store is damaged and no key file gives the
-///         key. The key of the store is used if it was set over the link while this key file was in use, or if there is
-///         no key file; else that of the key file. `time` is the later of the clock's and the stored one plus
-///         Signing::kRestartMargin.
+/// @return nothing, with complaints, if the key file is not good, or if the store is damaged or cannot be opened and no
+///         key file gives the key. The key of the store is used if it was set over the link while this key file was in
+///         use, or if there is no key file; else that of the key file. `time` is the later of the clock's and the
+///         stored one plus Signing::kRestartMargin.
 [[nodiscard]] std::optional<SigningState> load_signing(const std::string& key_file, const std::string& store,
                                                        std::uint64_t clock, Complaints& complaints);
 

@@ -164,21 +164,25 @@ inline double waited_in(const std::string& path)
     return waited * 1e-9;
 }
 
-/// A running jinkd; its output goes to a file, or to a given descriptor.
+/// A running jinkd; its output goes to a file, to a given descriptor, or nowhere.
 class Daemon {
 public:
     Daemon(const std::vector<std::string>& arguments, const fs::path& output)
         : Daemon(arguments, open(output.c_str(), O_CREAT | O_WRONLY | O_TRUNC | O_CLOEXEC, 0644))
     {
     }
-    /// `fd` becomes its standard output and error, and is closed here.
+    /// `fd` becomes its standard output and error, and is closed here; -1: it has no standard output.
     Daemon(const std::vector<std::string>& arguments, int fd)
     {
         pid_ = fork();
         if (pid_ == 0) {
             ::signal(SIGPIPE, SIG_DFL);
-            dup2(fd, STDOUT_FILENO);
-            dup2(fd, STDERR_FILENO);
+            if (fd < 0) {
+                close(STDOUT_FILENO);
+            } else {
+                dup2(fd, STDOUT_FILENO);
+                dup2(fd, STDERR_FILENO);
+            }
             // Otherwise the daemon would hold the cable's other end itself and never detect a disconnection.
             close_range(STDERR_FILENO + 1, ~0U, 0);
             std::vector<char*> argv{const_cast<char*>("jinkd")};

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The daemon from outside: options, files, signals, a cable that is pulled and put back.
+#include <sys/un.h>
+
 #include "tests/daemon/harness.hpp"
 
 namespace {
@@ -37,6 +39,7 @@ TEST(Jinkd, RefusesWhatItCannotUse)
         {"--serial", "/dev/ptmx", "--system-id", "256"},
         {"--serial", "/dev/ptmx", "--cloud", "/dev/null:0"},
         {"--serial", "/dev/ptmx", "--cloud", file},
+        {"--serial", "/dev/ptmx", "--log", ""},
         {"--serial", "/dev/ptmx", "--log-clouds"},
         {"--serial", "/dev/ptmx", "--log", "/tmp", "--log-clouds"},
         {"--serial", "/dev/ptmx", "--log", "/tmp", "--log-count", "1"},
@@ -64,6 +67,68 @@ TEST(Jinkd, RefusesWhatItCannotUse)
     const std::string said = text_of(scratch / "out");
     EXPECT_NE(said.find("bad.param:1"), std::string::npos) << said;
     EXPECT_NE(said.find("bad.param:2"), std::string::npos) << said;
+}
+
+TEST(Jinkd, SaysThatAStateFileCannotBeOpened)
+{
+    Scratch scratch;
+    Cable cable;
+    const std::string state = (scratch / "state").string();
+    fs::create_symlink(state, state);  // is there, and cannot be looked at
+    Daemon daemon({"--serial", cable.path(), "--state", state}, scratch / "out");
+    EXPECT_TRUE(cable.heartbeat(kPatience));
+    daemon.signal(SIGTERM);
+    EXPECT_EQ(daemon.wait(kPatience), 0);
+    EXPECT_NE(text_of(scratch / "out").find("state: cannot be opened"), std::string::npos) << text_of(scratch / "out");
+}
+
+/// A descriptor that is free must not become the line, on which status lines would go out.
+TEST(Jinkd, WithoutStandardOutputTheLineCarriesMavlinkAlone)
+{
+    Cable cable;
+    Daemon daemon({"--serial", cable.path(), "--status-period", "0.05"}, -1);
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_TRUE(cable.heartbeat(kPatience));
+    }
+    EXPECT_EQ(cable.heard().noise_bytes, 0U);
+    daemon.signal(SIGTERM);
+    EXPECT_EQ(daemon.wait(kPatience), 0);
+}
+
+/// The service manager starts what waits for jinkd: READY comes when nothing can refuse any more.
+TEST(Jinkd, IsReadyOnceNothingCanRefuse)
+{
+    Scratch scratch;
+    std::ofstream(scratch / "bad.yaml") << "no airspace";
+    const std::string path = (scratch / "notify").string();
+    const int manager = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    path.copy(address.sun_path, sizeof address.sun_path - 1);
+    ASSERT_EQ(bind(manager, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    const auto next = [&](int flags) {
+        std::array<char, 100> text{};
+        const ssize_t n = recv(manager, text.data(), text.size(), flags);
+        return std::string(text.data(), static_cast<std::size_t>(std::max<ssize_t>(n, 0)));
+    };
+    ASSERT_EQ(setenv("NOTIFY_SOCKET", path.c_str(), 1), 0);
+    Cable cable;
+    const std::vector<std::vector<std::string>> cases{{"--airspace", (scratch / "bad.yaml").string()},
+                                                      {"--signing-key", (scratch / "none").string()}};
+    for (std::vector<std::string> arguments : cases) {
+        arguments.insert(arguments.begin(), {"--serial", cable.path()});
+        Daemon daemon(arguments, scratch / "out");
+        EXPECT_EQ(daemon.wait(kPatience), 2) << testing::PrintToString(arguments) << text_of(scratch / "out");
+        EXPECT_EQ(next(MSG_DONTWAIT), "") << testing::PrintToString(arguments);
+    }
+    Daemon daemon({"--serial", cable.path()}, scratch / "out");
+    ASSERT_EQ(unsetenv("NOTIFY_SOCKET"), 0);
+    ASSERT_TRUE(cable.heartbeat(kPatience)) << text_of(scratch / "out");
+    EXPECT_EQ(next(MSG_DONTWAIT), "READY=1");
+    EXPECT_EQ(next(MSG_DONTWAIT), "WATCHDOG=1");
+    daemon.signal(SIGTERM);
+    EXPECT_EQ(daemon.wait(kPatience), 0);
+    close(manager);
 }
 
 TEST(Jinkd, SaysWhatIsMissingForCan)

@@ -182,7 +182,20 @@ def flood(port, seconds, seed):
     return opened
 
 
+def check_address(jinkd):
+    """Another address of loopback is a Host too, and no other one is."""
+    with tempfile.TemporaryDirectory() as name:
+        running = Running(jinkd, pathlib.Path(name), address="127.0.0.2")
+        for host, expected in (("127.0.0.2", 200), (f"127.0.0.2:{running.port}", 200), ("localhost", 200), ("127.0.0.1", 200),
+                               ("127.0.0.3", 421), ("127.0.0.2.evil.example", 421), ("evil.example", 421), ("", 421)):
+            status, _, _ = answer(running.port, get("/", host), "127.0.0.2")
+            assert status == expected, f"{host} on 127.0.0.2: {status}, expected {expected}"
+        time.sleep(1.5)  # steps that are counted
+        running.stop()
+
+
 def check_server(options):
+    check_address(options.jinkd)
     for extra in ([], ["--log", "logs"]):
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)

@@ -28,12 +28,12 @@ def until(condition, what, patience=PATIENCE):
     return found
 
 
-def connect(port, receive_buffer=None):
+def connect(port, receive_buffer=None, address="127.0.0.1"):
     client = socket.socket()
     if receive_buffer:
         client.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
     client.settimeout(PATIENCE)
-    client.connect(("127.0.0.1", port))
+    client.connect((address, port))
     return client
 
 
@@ -51,9 +51,9 @@ def get(target, host="localhost"):
     return f"GET {target} HTTP/1.1\r\nHost: {host}\r\n\r\n".encode()
 
 
-def answer(port, request):
+def answer(port, request, address="127.0.0.1"):
     """(status, fields, body) of one request; status 0: closed without an answer."""
-    with connect(port) as client:
+    with connect(port, address=address) as client:
         try:
             client.sendall(request)
         except (ConnectionResetError, BrokenPipeError):
@@ -108,16 +108,16 @@ class Hearer:
 class Running:
     """jinkd on a pseudo-terminal on which nobody speaks."""
 
-    def __init__(self, jinkd, folder, *options):
+    def __init__(self, jinkd, folder, *options, address=""):
         self.master, self.other = os.openpty()
         tty.setraw(self.other)
         self.port, self.summary = free_port(), folder / "summary.json"
         page = folder / "stub.html"
         page.write_bytes(STUB)
         self.output = open(folder / "said", "wb")
-        self.jinkd = subprocess.Popen([jinkd, "--serial", os.ttyname(self.other), "--page", str(self.port), "--page-file", page, "--summary",
+        self.jinkd = subprocess.Popen([jinkd, "--serial", os.ttyname(self.other), "--page", (address and address + ":") + str(self.port), "--page-file", page, "--summary",
                                        self.summary, *options], stdout=self.output, stderr=subprocess.STDOUT)
-        until(lambda: self.jinkd.poll() is None and socket.socket().connect_ex(("127.0.0.1", self.port)) == 0, "jinkd does not listen")
+        until(lambda: self.jinkd.poll() is None and socket.socket().connect_ex((address or "127.0.0.1", self.port)) == 0, "jinkd does not listen")
 
     def waited(self):
         """How long the loop was ready to run without a processor [s]."""

@@ -53,7 +53,8 @@ protected:
         step.own_source = own_source;
         take(TopicId::step, step);
     }
-    void take_track(std::uint32_t id, double seconds, const flightlog::Xyz& at, const flightlog::Xyz& velocity)
+    void take_track(std::uint32_t id, double seconds, const flightlog::Xyz& at, const flightlog::Xyz& velocity,
+                    std::uint8_t instance = 0)
     {
         TrackTopic track;
         track.timestamp = kStart + static_cast<std::uint64_t>(seconds * 1e6);
@@ -61,6 +62,7 @@ protected:
         track.position = at;
         track.velocity = velocity;
         track.radius = 2.0F;
+        track.instance = instance;
         take(TopicId::track, track);
     }
     void take_decision(std::uint32_t number, double seconds, std::size_t candidates, std::size_t chosen = 1000)

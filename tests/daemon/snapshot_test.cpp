@@ -59,6 +59,31 @@ TEST_F(SnapshotTest, ATrackWithoutNewsIsGoneAndThoseOfALaterTimeReplaceIt)
     EXPECT_EQ(event()["tracks"].size(), Snapshot::kMaxTracks);
 }
 
+TEST_F(SnapshotTest, TwoAircraftUnderOneIdDifferInTheirInstance)
+{
+    take_track(7, 0.0, {100.0F, 0.0F, 0.0F}, {}, 0);
+    take_track(7, 0.0, {30.0F, 0.0F, 0.0F}, {}, 1);
+    take_step(0.0);
+    const Json e = event();
+    ASSERT_EQ(e["tracks"].size(), 2U);
+    EXPECT_EQ(e["tracks"][0]["instance"], 0);
+    EXPECT_EQ(e["tracks"][1]["instance"], 1);
+    EXPECT_EQ(e["tracks"][1]["id"], 7);
+}
+
+/// A page that was away hears by it that jinkd began anew.
+TEST_F(SnapshotTest, EveryEventNamesItsRun)
+{
+    take_step(1.0);
+    EXPECT_EQ(event(true)["run"], kStart + 1'000'000);
+    snapshot.begin_next();
+    take_step(2.0);
+    EXPECT_EQ(event()["run"], kStart + 1'000'000);
+    snapshot = Snapshot({1.5F, 8.0F, 1.0F});
+    take_step(2.5);
+    EXPECT_EQ(event()["run"], kStart + 2'500'000);
+}
+
 TEST_F(SnapshotTest, UnknownAndEndlessNumbersAreNull)
 {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();

@@ -96,15 +96,103 @@ TEST(LogFiles, TheOldestAreRemovedAndOtherFilesStay)
     Store store;
     store.files["jink_20200101_000000_000.ulg"] = "old";
     store.files["jink_29990101_000000_000.ulg"] = "of a clock that was wrong";
-    store.files["notes.txt"] = "not a log";
+    const std::string renamed[] = {"notes.txt", "jink_2020-01-01_crash_to_keep.ulg",
+                                   "jink_20200101_000000_000_keep.ulg"};
+    for (const std::string& name : renamed) {
+        store.files[name] = "not a log";
+    }
     LogFiles files({"folder", 50'000, 3}, definitions_of(plain_setup()), std::make_unique<MemoryDisk>(store));
     std::int64_t now = 0;
     write_all(files, now);
     ASSERT_GT(files.files(), 3U);
-    EXPECT_EQ(store.files.size(), 4U);
-    EXPECT_TRUE(store.files.contains("notes.txt"));
+    EXPECT_EQ(store.files.size(), 6U);
+    for (const std::string& name : renamed) {
+        EXPECT_TRUE(store.files.contains(name)) << name;
+    }
     EXPECT_FALSE(store.files.contains("jink_20200101_000000_000.ulg"));
     EXPECT_FALSE(store.files.contains("jink_29990101_000000_000.ulg")) << "of an earlier run";
+}
+
+std::string run_of(const std::string& file)
+{
+    std::istringstream in(file);
+    ulog::Reader reader(in);
+    while (reader.next()) {
+    }
+    return reader.info("jink_run");
+}
+
+/// Two programs choose the name of their run in the same second, before either has a file.
+TEST(LogFiles, OfTwoRunsInOneSecondHaveNamesOfTheirOwn)
+{
+    Store store;
+    const FileOptions options{"folder", 50'000, 100};
+    LogFiles one(options, definitions_of(plain_setup()), std::make_unique<MemoryDisk>(store));
+    LogFiles other(options, definitions_of(plain_setup()), std::make_unique<MemoryDisk>(store));
+    std::int64_t now = 0;
+    write_all(one, now);
+    now = 0;
+    write_all(other, now);
+    EXPECT_EQ(one.failures() + other.failures(), 0U);
+    EXPECT_EQ(store.files.size(), one.files() + other.files());
+    std::map<std::string, std::size_t> runs;
+    for (const auto& [name, text] : store.files) {
+        ++runs[run_of(text)];
+        EXPECT_TRUE(name.starts_with(run_of(text))) << name;
+    }
+    EXPECT_EQ(runs.size(), 2U) << "a run for each of them";
+}
+
+TEST(LogFiles, PassOverANameThatIsTaken)
+{
+    Store store;
+    LogFiles files({"folder", 50'000, 100}, definitions_of(plain_setup()), std::make_unique<MemoryDisk>(store));
+    files.take(flown().data().first(whole_messages(flown().data(), 1'000)));
+    files.work(0, false);
+    ASSERT_EQ(store.files.size(), 1U);
+    std::string next = store.files.begin()->first;
+    next.replace(next.size() - 7, 3, "001");
+    store.files[next] = "of somebody else";
+    std::int64_t now = 0;
+    write_all(files, now);
+    EXPECT_EQ(files.failures(), 0U);
+    EXPECT_GT(files.files(), 1U);
+    EXPECT_EQ(store.files.size(), files.files() + 1U);
+    EXPECT_EQ(store.files[next], "of somebody else");
+}
+
+/// Writes succeed in memory, and nothing gets to the medium: no old log gives way to files that may be lost.
+TEST(LogFiles, ADiskThatCannotSynchroniseKeepsOldLogsAndIsReportedOnce)
+{
+    Store store;
+    const std::string old = "jink_20200101_000000_000.ulg";
+    store.files[old] = "old";
+    store.files["jink_20200102_000000_000.ulg"] = "old";
+    store.sync_error = EIO;
+    LogFiles files({"folder", 100'000'000, 2}, definitions_of(plain_setup()), std::make_unique<MemoryDisk>(store));
+    ulog::Messages text;
+    text.parameter("TRK_AGE", 13.0F);
+    int news = 0;
+    std::int64_t now = 0;
+    const auto run = [&](std::int64_t until) {
+        for (; now < until; now += 50'000) {
+            files.take(text.bytes());
+            files.work(now, false);
+            news += files.take_news() != 0 ? 1 : 0;
+        }
+    };
+    run(60'000'000);
+    EXPECT_GE(files.failures(), 5U);
+    EXPECT_LE(files.failures(), 7U) << "every 10 s";
+    EXPECT_EQ(news, 1);
+    EXPECT_TRUE(store.files.contains(old));
+    store.sync_error = 0;
+    run(80'000'000);
+    EXPECT_FALSE(store.files.contains(old));
+    EXPECT_EQ(store.files.size(), 2U);
+    store.sync_error = EIO;
+    run(85'000'000);
+    EXPECT_EQ(news, 2) << "a new series";
 }
 
 TEST(LogFiles, AFullDiskKeepsOldLogsAndIsTriedAgain)

@@ -40,7 +40,7 @@ std::vector<std::byte> left_at_once(std::span<const std::byte> stream)
     for (std::size_t i = 0; i + kHeader <= stream.size(); ++i) {
         const auto byte = [&](std::size_t k) { return static_cast<unsigned>(stream[i + k]); };
         const unsigned id = byte(7) | byte(8) << 8U | byte(9) << 16U;
-        if (byte(0) == 0xFD && byte(1) > 10 && byte(1) <= 42 && byte(2) <= 1 && id == 256) {
+        if (byte(0) == 0xFD && byte(1) > 10 && byte(2) <= 1 && id == 256) {
             for (std::size_t k = i + kHeader; k < std::min(i + kHeader + byte(1) + 2, stream.size()); ++k) {
                 kept[k] = std::byte{0};
             }
@@ -118,6 +118,29 @@ TEST(KeyEraser, ErasesAKeyHoweverItsFrameIsSplit)
                                        kept.begin()));
                 ASSERT_TRUE(std::equal(stream.end() - 30, stream.end(), kept.end() - 30)) << "what follows stays";
             }
+        }
+    }
+}
+
+/// The receiver takes payloads that are longer than those of this revision, and the key in them.
+TEST(KeyEraser, ErasesAKeyInALongerPayload)
+{
+    constexpr std::ptrdiff_t kBehind = 70;
+    for (const std::size_t payload : {42U, 43U, 50U, 255U}) {
+        std::vector<std::byte> stream = setup_signing_frame(payload);
+        stream.insert(stream.end(), kBehind, std::byte{0x22});
+        ASSERT_EQ(longest_part(stream, secret()), secret().size());
+        for (const std::size_t size : {1U, 7U, 30U, 500U}) {
+            const std::vector<std::byte> kept = left_by_eraser(stream, {size});
+            EXPECT_LE(longest_part(kept, secret()), 1U) << payload << " bytes in reads of " << size;
+            EXPECT_TRUE(std::equal(stream.end() - kBehind, stream.end(), kept.end() - kBehind)) << payload;
+        }
+        for (std::ptrdiff_t missing = 1; missing < 52; ++missing) {
+            KeyEraser eraser;
+            eraser.forget();
+            std::vector<std::byte> rest(stream.begin() + missing, stream.end());
+            static_cast<void>(eraser.erase(rest));
+            EXPECT_LE(longest_part(rest, secret()), 1U) << payload << " without the first " << missing;
         }
     }
 }

@@ -38,11 +38,14 @@ public:
     int create(const std::string& path) override
     {
         const std::string name = std::filesystem::path(path).filename().string();
-        if (store_.create_error == 0) {
-            EXPECT_TRUE(store_.files.emplace(name, "").second) << name;
-            open_ = name;
+        if (store_.create_error != 0) {
+            return store_.create_error;
         }
-        return store_.create_error;
+        if (!store_.files.emplace(name, "").second) {
+            return EEXIST;
+        }
+        open_ = name;
+        return 0;
     }
     int write(std::span<const std::byte> bytes, std::size_t& written) override
     {

@@ -7,13 +7,8 @@
 #include <cstdlib>
 #include <random>
 
-#include "tests/flight_log/recorded_flight.hpp"
-#include "tests/flight_log/stream_content.hpp"
-#include "tests/flight_log/stream_flight.hpp"
-#include "tests/host/scratch.hpp"
-#include "toolchain/host/flight_page.hpp"
+#include "tests/flight_log/page_log.hpp"
 #include "toolchain/sim/in_process.hpp"
-#include "toolchain/sim/random_scenario.hpp"
 #include "toolchain/sim/report.hpp"
 #include "toolchain/sim/scenario_file.hpp"
 
@@ -22,21 +17,6 @@ namespace {
 using namespace jink::test;
 namespace host = jink::host;
 namespace sim = jink::sim;
-
-const RecordedFlight& page_flight()
-{
-    static const RecordedFlight flown = [] {
-        sim::Scenario scenario = sim::random_scenario(7);
-        scenario.duration = 16.0;
-        return fly_recorded(scenario, {});
-    }();
-    return flown;
-}
-
-host::PageFlight page_of(const Scratch& scratch, const std::string& log)
-{
-    return host::read_flight_log(scratch.write("flight.ulg", log)).flights.at(0);
-}
 
 TEST(FlightPage, SamplesAreWhatTheLogSays)
 {
@@ -166,50 +146,6 @@ TEST(FlightPage, DamagedLogsGiveAPageOrAReason)
     }
     EXPECT_GT(pages, 10U);
     EXPECT_GT(refused, 0U);
-}
-
-/// A log that a board streamed.
-const std::string& board_log()
-{
-    static const std::string file = [] {
-        StreamFlight s;
-        EXPECT_TRUE(s.begin());
-        EXPECT_EQ(s.ask(StreamFlight::kStart), StreamFlight::kAccepted);
-        EXPECT_TRUE(s.fly_to_data());
-        s.see_a_mast();
-        s.fly(1'000);
-        return s.receiver.file;
-    }();
-    return file;
-}
-
-/// The log without the messages of a topic for which `lacks` holds. Sizes and types of messages: the ULog format.
-template <class T, class Lacks>
-std::string without(const std::string& log, jink::flightlog::TopicId topic, Lacks lacks)
-{
-    const auto byte = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<unsigned char>(log[i])); };
-    std::string kept = log.substr(0, 16);
-    for (std::size_t at = 16, size = 0; at + 5 <= log.size(); at += size) {
-        size = 3 + byte(at) + 256 * byte(at + 1);
-        const bool is_of_topic = log[at + 2] == 'D' && byte(at + 3) + 256 * byte(at + 4) == std::size_t(topic);
-        const auto message = std::as_bytes(std::span(log)).subspan(at + 3, size - 3);
-        if (!is_of_topic || !lacks(topic_of<T>(message))) {
-            kept += log.substr(at, size);
-        }
-    }
-    return kept;
-}
-
-template <class Lacks>
-std::string without_candidates(const std::string& log, Lacks lacks)
-{
-    return without<jink::flightlog::CandidateTopic>(log, jink::flightlog::TopicId::candidate, lacks);
-}
-
-std::size_t count_of(const host::PageDecision& decision, host::Fate fate)
-{
-    return static_cast<std::size_t>(std::count_if(decision.candidates.begin(), decision.candidates.end(),
-                                                  [&](const auto& candidate) { return candidate.fate == fate; }));
 }
 
 TEST(FlightPage, ABoardsLogHasItsCandidates)

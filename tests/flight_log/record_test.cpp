@@ -235,7 +235,8 @@ TEST(FlightReplay, AnotherVersionIsRefusedUnlessItIsWanted)
     EXPECT_TRUE(replay(log, any).is_identical());
 }
 
-TEST(FlightReplay, ASigningKeyIsNeverInALog)
+/// @param payload  length of the frame's payload [bytes]
+void expect_no_key_in_a_log(std::size_t payload)
 {
     constexpr std::int64_t kStart = 1'000'000;
     hal::ManualClock clock(kStart);
@@ -257,7 +258,7 @@ TEST(FlightReplay, ASigningKeyIsNeverInALog)
         const std::size_t n = link::mavlink::encode(heartbeat, {1, 1, static_cast<std::uint8_t>(i)}, frame);
         static_cast<void>(cable->write({frame.data(), n}));
         if (i == 50) {
-            static_cast<void>(cable->write(setup_signing_frame()));
+            static_cast<void>(cable->write(setup_signing_frame(payload)));
         }
         clock.advance(20'000);
         log.begin({clock.now_us()});
@@ -270,6 +271,14 @@ TEST(FlightReplay, ASigningKeyIsNeverInALog)
     EXPECT_NE(result.incomplete.find("signing key"), std::string::npos) << result.difference << result.refused;
     EXPECT_FALSE(result.is_identical());
     EXPECT_GE(result.steps, 50U);
+}
+
+TEST(FlightReplay, ASigningKeyIsNeverInALog)
+{
+    for (const std::size_t payload : {42U, 43U, 50U, 255U}) {
+        SCOPED_TRACE(payload);
+        expect_no_key_in_a_log(payload);
+    }
 }
 
 }  // namespace

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the recorder leaves out of a record, because a replay knows it: health that follows from the calls, and records
-// that nobody reads.
+// that nobody reads. What it logs again, because an output dropped it.
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "firmware/linux/flight_log/playing_ports.hpp"
+#include "firmware/linux/logging.hpp"
 #include "firmware/linux/read_ahead.hpp"
 #include "tests/flight_log/recorded_flight.hpp"
 #include "tests/flight_log/recorded_input.hpp"
@@ -224,6 +225,81 @@ TEST(FlightLog, HasTheSameMessagesWithoutRecords)
         EXPECT_EQ(without_records_of(without.log), without_records_of(with.log));
         EXPECT_TRUE(records_of(std::as_bytes(std::span(without.log)).subspan(ulog::kFileHeader)).empty());
         EXPECT_GT(with.steps, 300U);
+    }
+}
+
+/// Keeps parameters; drops everything while it is full.
+class ParameterOutput final : public Output {
+public:
+    bool add(std::span<const std::byte> messages, std::uint32_t /*count*/, Records /*records*/) noexcept override
+    {
+        for (; !is_full && !messages.empty(); messages = messages.subspan(ulog::size_of_message(messages))) {
+            const auto content =
+                messages.subspan(ulog::kMessageHeader, ulog::size_of_message(messages) - ulog::kMessageHeader);
+            const auto keyed = static_cast<ulog::Type>(messages[2]) == ulog::Type::parameter
+                                   ? ulog::parse_keyed(content, ulog::Type::parameter)
+                                   : std::nullopt;
+            if (keyed) {
+                values[keyed->name] = keyed->number().value_or(-1.0F);
+                ++logged;
+            }
+        }
+        return !is_full;
+    }
+    void lose() noexcept override {}
+    [[nodiscard]] LogCounts counts() const noexcept override { return {}; }
+
+    bool is_full = false;
+    std::map<std::string, float> values;  ///< the last ones
+    std::size_t logged = 0;
+};
+
+/// Two changes in a time of drops, one of them taken back in the next.
+TEST(FlightLog, LogsParametersAgainThatWereDropped)
+{
+    sim::Scenario scenario = sim::random_scenario(3);
+    scenario.duration = 3.0;
+    for (const bool with_page : {false, true}) {
+        for (const bool page_is_full : {false, true}) {
+            ParameterOutput files;
+            ParameterOutput page;
+            host::TwoOutputs both(files, page);
+            ParameterOutput& full = with_page && page_is_full ? page : files;
+            FlightOptions options;
+            options.output = with_page ? static_cast<Output*>(&both) : &files;
+            app::ParamValues values{};
+            float& age = values[static_cast<std::size_t>(app::Param::track_age)];
+            float& lookahead = values[static_cast<std::size_t>(app::Param::lookahead)];
+            float age_before = 0.0F;
+            options.beside = [&](std::uint64_t step, TimePoint /*now*/, app::Coprocessor& coprocessor, HalRecorder&) {
+                const bool is_dropping = (step >= 20 && step < 30) || (step >= 50 && step < 60);
+                full.is_full = is_dropping;
+                if (step == 10) {  // the scenario's own are logged
+                    values = coprocessor.parameters().values();
+                    age_before = age;
+                    full.values.clear();
+                    full.logged = 0;
+                    return;
+                }
+                if (step == 21) {
+                    age = 7.0F;
+                } else if (step == 25) {
+                    lookahead = 9.0F;
+                } else if (step == 51) {
+                    age = age_before;
+                } else {
+                    const bool knows = (step > 30 && step < 50) || step > 60;
+                    EXPECT_TRUE(!knows || full.values["TRK_AGE"] == age) << step;
+                    EXPECT_TRUE(!knows || full.values["JNK_LOOKAHEAD"] == lookahead) << step;
+                    return;
+                }
+                EXPECT_EQ(coprocessor.restore_parameters(values), 0U);
+            };
+            static_cast<void>(fly_recorded(scenario, {}, options));
+            EXPECT_EQ(full.values.size(), 2U) << "and no others";
+            EXPECT_EQ(full.logged, 3U) << "once each";
+            EXPECT_EQ(full.values["TRK_AGE"], age_before);
+        }
     }
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware/link/mavlink/checksum.hpp"
 #include "firmware/link/mavlink/encoder.hpp"
 #include "firmware/link/mavlink/messages.hpp"
 #include "firmware/link/mavlink/signing.hpp"
@@ -26,7 +27,8 @@ inline link::mavlink::Signing::Key secret()
     return key;
 }
 
-inline std::vector<std::byte> setup_signing_frame()
+/// @param payload  its length [bytes]: 42, or more as in a later revision of the message
+inline std::vector<std::byte> setup_signing_frame(std::size_t payload = link::mavlink::SetupSigning::kInfo.max_length)
 {
     link::mavlink::SetupSigning message;
     message.target_system = 1;
@@ -37,7 +39,17 @@ inline std::vector<std::byte> setup_signing_frame()
     message.initial_timestamp = 12345;
     std::array<std::byte, link::mavlink::kMaxFrame> frame{};
     const std::size_t n = link::mavlink::encode(message, {255, 190, 3}, frame);
-    return {frame.begin(), frame.begin() + static_cast<std::ptrdiff_t>(n)};
+    std::vector<std::byte> bytes(frame.begin(), frame.begin() + static_cast<std::ptrdiff_t>(n));
+    bytes[1] = static_cast<std::byte>(payload);
+    bytes.resize(link::mavlink::kHeaderV2 + payload, std::byte{0x77});
+    std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(n - link::mavlink::kChecksumSize), bytes.end(),
+              std::byte{0x77});
+    link::mavlink::Checksum checksum;
+    checksum.add(std::span(bytes).subspan(1));
+    checksum.add(std::byte{link::mavlink::SetupSigning::kInfo.crc_extra});
+    bytes.push_back(static_cast<std::byte>(checksum.value() & 0xFFU));
+    bytes.push_back(static_cast<std::byte>(checksum.value() >> 8U));
+    return bytes;
 }
 
 /// Longest part of a key that `bytes` contain.

@@ -111,6 +111,7 @@ TEST(AirspaceFile, WhatIsWrongIsNamedByItsLine)
     expect("frame: local\nareas:\n  - {centre: [10, 20], radius: 0, bottom: 1, top: 9}\n", "radius", 3);
     expect("frame: local\nareas:\n  - {centre: [10, 20], radius: .nan, bottom: 1, top: 9}\n", "radius", 3);
     expect("frame: local\nareas:\n  - {centre: [10], radius: 5, bottom: 1, top: 9}\n", "two numbers", 3);
+    expect("frame: local\nareas:\n  - {centre: !!set [10, 20], radius: 5, bottom: 1, top: 9}\n", "no tag is wanted", 3);
     expect("frame: local\nareas:\n  - {centre: [10, 20], radius: 5, top: 9}\n", "bottom", 3);
     expect("frame: local\nareas:\n  - {centre: [10, 20], radius: 5, bottom: 10, top: 9}\n", "lies below", 3);
     expect(kCircle + ", margin: -1}\n", "margin", 3);

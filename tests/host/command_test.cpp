@@ -204,13 +204,13 @@ nlohmann::json sample_run()
     random["judge"] = {{"avoidable", true}};
     random["outcome"] = "breach";
     random["least"]["surface"] = 0.2;
-    return {{"flights", {flight, random}}};
+    return {{"format", "jink-sim run"}, {"version", 2}, {"flights", {flight, random}}};
 }
 
 /// Whether the viewer has been built; without it `jink report` says what to do.
 bool has_viewer(const Scratch& scratch)
 {
-    static_cast<void>(scratch.write("probe.json", R"({"flights": []})"));
+    static_cast<void>(scratch.write("probe.json", R"({"format": "jink-sim run", "version": 2, "flights": []})"));
     const Ran ran = jink(scratch, "report probe.json --out probe.html");
     EXPECT_TRUE(ran.status == 0 || ran.err.find("toolchain/viewer/setup.sh") != std::string::npos) << ran.err;
     return ran.status == 0;
@@ -259,6 +259,9 @@ TEST(Command, ReportBearsWhatIsMissingAndRefusesWhatIsNoRun)
     EXPECT_EQ(ran.status, 0) << ran.err;
     EXPECT_EQ(ran.out, "Written: page.html\n");
     const nlohmann::json run = sample_run();
+    const auto headed = [](const char* flights) {
+        return std::string(R"({"format": "jink-sim run", "version": 2, )") + flights + "}";
+    };
     const auto changed = [&](const char* at, const nlohmann::json& value) {
         nlohmann::json one = run;
         one[nlohmann::json::json_pointer(at)] = value;
@@ -271,9 +274,16 @@ TEST(Command, ReportBearsWhatIsMissingAndRefusesWhatIsNoRun)
         {"{", "wrong.json: is not JSON: parse error at line 1, column 2"},
         {"", "wrong.json: is not JSON"},
         {"[]", "wrong.json: holds no list of flights"},
-        {"{\"flights\": 3}", "wrong.json: holds no list of flights"},
-        {"{\"flights\": [3]}", "wrong.json: flights[0]: expected an object"},
-        {"{\"flights\": [null]}", "wrong.json: flights[0]: expected an object"},
+        {headed(R"("flights": 3)"), "wrong.json: holds no list of flights"},
+        {headed(R"("flights": [3])"), "wrong.json: flights[0]: expected an object"},
+        {headed(R"("flights": [null])"), "wrong.json: flights[0]: expected an object"},
+        {R"({"flights": []})", "wrong.json: format: expected 'jink-sim run'"},
+        {changed("/format", "jink-sim walk"), "wrong.json: format: expected 'jink-sim run'"},
+        {changed("/version", 3), "wrong.json: version: expected 2"},
+        {headed(R"("flights": [{"name": "a", "name": "b"}])"), ": key 'name' comes twice"},
+        {headed((R"("flights": [{"promise": 1)" + std::string(400, '0') + "}]").c_str()),
+         ": expected a number that double precision holds"},
+        {changed("/flights/0/promise", 1e300), "flights[0].promise: expected a number from -1e7 to 1e7"},
         {"ULog\1", "wrong.json: not a ULog file"},
         {changed("/flights/1/name", 3), "wrong.json: flights[1].name: expected a text"},
         {changed("/flights/0/promise", "far"), "flights[0].promise: expected a number"},
@@ -305,7 +315,7 @@ TEST(Command, ReportBearsWhatIsMissingAndRefusesWhatIsNoRun)
     EXPECT_NE(jink(scratch, "report none.ulg").err.find("none.ulg: cannot be read"), std::string::npos);
     const Ran nowhere = jink(scratch, "report bare.json --out /nowhere/page.html");
     EXPECT_EQ(nowhere.status, 2);
-    EXPECT_NE(nowhere.err.find("/nowhere/page.html cannot be written"), std::string::npos) << nowhere.err;
+    EXPECT_NE(nowhere.err.find("/nowhere/page.html: cannot be opened"), std::string::npos) << nowhere.err;
 }
 
 TEST(Command, TablesAreWrittenAndWhatTheyComeFromIsChecked)
@@ -338,7 +348,7 @@ TEST(Command, TablesAreWrittenAndWhatTheyComeFromIsChecked)
     refused(vehicles + "uav2/vehicle.yaml", " --waypoints 65", "waypoints");
     const Ran unwritten = jink(scratch, "tables " + vehicles + "uav2/vehicle.yaml --out no_folder/a.hpp");
     EXPECT_EQ(unwritten.status, 2);
-    EXPECT_NE(unwritten.err.find("cannot be written"), std::string::npos);
+    EXPECT_NE(unwritten.err.find("no_folder/a.hpp: cannot be opened"), std::string::npos);
 }
 
 TEST(Command, WaypointsPrintsARowForEachNumber)

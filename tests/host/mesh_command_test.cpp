@@ -76,6 +76,15 @@ TEST(MeshCommand, BuildsAHeaderOfConstantTablesThatCompiles)
     EXPECT_NE(header.find(checksum), std::string::npos) << "file and header are the same map";
 }
 
+TEST(MeshCommand, AHeaderOfAFileWithAnOddNameCompiles)
+{
+    const Scratch scratch;
+    static_cast<void>(scratch.write("a\n#error.obj", jink::test::as_obj(jink::test::box(1, 1, 1))));
+    const Outcome built = jink_mesh(scratch, "build 'a\n#error.obj' --name box --header box.hpp");
+    EXPECT_EQ(built.status, 0) << built.err;
+    EXPECT_NE(slurp(scratch.path() / "box.hpp").find("from a\\x0a#error.obj: 1 pieces"), std::string::npos);
+}
+
 TEST(MeshCommand, AnOriginIsKeptInFileAndHeader)
 {
     const Scratch scratch;
@@ -125,12 +134,23 @@ TEST(MeshCommand, WhatIsWrongIsSaidInALine)
     static_cast<void>(scratch.write("far.obj", jink::test::as_obj(jink::test::box(2000, 1, 1))));
     static_cast<void>(scratch.write("1.obj", jink::test::as_obj(jink::test::box(1, 1, 1))));
     static_cast<void>(scratch.write("empty.stl", ""));
+    static_cast<void>(scratch.write("dropped.obj", "v 0 0 0\nv O 0 0\nv 0 4 0\nv 0 0 4\nv 4 0 0\nf 1 3 2\nf 1 2 4\n"));
+    static_cast<void>(scratch.write("long.stl", "solid a\nfacet normal 0 0 0\nouter loop\nvertex " +
+                                                    std::string(1'000'000, 'x') + " 0 0\n"));
+    static_cast<void>(scratch.write("box.ply", jink::test::as_obj(jink::test::box(1, 1, 1))));
     const std::pair<const char*, const char*> cases[] = {
         {"build none.obj", "jink mesh build: none.obj: no such file\n"},
-        {"build empty.stl", "jink mesh build: empty.stl: cannot be read: "},
+        {"build empty.stl", "jink mesh build: empty.stl:1:1: 'solid' is wanted, not the end of the file\n"},
+        {"build dropped.obj", "jink mesh build: dropped.obj:2:3: a finite decimal number is wanted, not 'O'\n"},
+        {"build long.stl", "jink mesh build: long.stl:4:8: a finite decimal number is wanted, not 'xxxxx"},
+        {"build box.ply", "jink mesh build: box.ply: its name ends in neither .obj nor .stl\n"},
         {"build open.obj", "jink mesh build: open.obj: an object is not closed: 3 edges"},
         {"build far.obj", "jink mesh build: far.obj: a coordinate of 2000"},
-        {"build 1.obj", "jink mesh build: '1' leaves nothing that a C++ name can be made of"},
+        {"build 1.obj", "jink mesh build: no C++ name can be made of '1'; give --name"},
+        {"build box.obj --name '\"; int x' --header a.hpp", "jink mesh build: no C++ name can be made of '\"; int x'"},
+        {"build box.obj -o box.obj", "jink mesh build: box.obj: cannot be written: it is the same file as"},
+        {"build box.obj -o same --header ./same", "jink mesh build: ./same: cannot be written: it is the same file as"},
+        {"build box.obj -o a.map --header none/a.hpp", "jink mesh build: none/a.hpp: cannot be opened: its folder"},
         {"build box.obj -o none/box.map", "jink mesh build: none/box.map"},
         {"build box.obj --origin 89,8,500", "jink mesh build: --origin: latitude within 85 degrees"},
         {"build box.obj --origin 47,8,nan", "jink mesh build: --origin: latitude within 85 degrees"},
@@ -144,7 +164,9 @@ TEST(MeshCommand, WhatIsWrongIsSaidInALine)
         EXPECT_EQ(bad.err.rfind(complaint, 0), 0U) << arguments << ": " << bad.err;
         EXPECT_EQ(std::count(bad.err.begin(), bad.err.end(), '\n'), 1) << bad.err;
     }
+    EXPECT_FALSE(std::filesystem::exists(scratch.path() / "a.map"));
     EXPECT_EQ(jink_mesh(scratch, "build box.obj --method best").status, 2);
+    EXPECT_EQ(jink_mesh(scratch, "build box.obj --concavity nan").status, 2);
     EXPECT_EQ(jink_mesh(scratch, "build box.obj --concavity 0").status, 2);
     EXPECT_EQ(jink_mesh(scratch, "build open.obj --open").status, 0);
     EXPECT_EQ(jink_mesh(scratch, "build far.obj --scale 0.001").status, 0);

@@ -95,6 +95,13 @@ TEST(ParamFile, RefusesEachWrongLineByItsNumber)
     }
 }
 
+TEST(ParamFile, RefusesAZeroByteInACommentToo)
+{
+    Complaints complaints;
+    EXPECT_FALSE(apply_param_text(std::string("HB_AGE,5\n# a\0b\n", 15), "f", defaults(), complaints));
+    EXPECT_EQ(test::all_of(complaints), "f:2:4: a zero byte: the file has to be text\n");
+}
+
 TEST(ParamFile, NamesAllWrongLinesNotOnlyTheFirst)
 {
     Complaints complaints;

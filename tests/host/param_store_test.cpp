@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Parameters that outlive a restart: cut files, foreign lines, values that no longer fit, kills between two steps.
+#include <fcntl.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include <array>
+#include <filesystem>
+#include <fstream>
 
 #include <gtest/gtest.h>
 
@@ -198,6 +203,31 @@ TEST(ParamStore, WhatCannotBeWrittenSaysWhyAndLeavesNothingBehind)
     const std::string fifo = (scratch.path() / "state.new").string();
     ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
     EXPECT_NE(replace_file((scratch.path() / "state").string(), "x"), "") << "and does not wait for a reader";
+}
+
+TEST(ParamStore, APipeIsWrittenAndALinkKeepsItsName)
+{
+    const Scratch scratch;
+    const std::string pipe = (scratch.path() / "pipe").string();
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    EXPECT_NE(replace_file(pipe, "x"), "") << "nobody reads";
+    const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    ASSERT_GE(reader, 0);
+    EXPECT_EQ(replace_file(pipe, "text"), "");
+    std::array<char, 10> read_back{};
+    EXPECT_EQ(read(reader, read_back.data(), read_back.size()), 4);
+    close(reader);
+    EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+    EXPECT_NE(replace_file(pipe, "key", FileAccess::owner_only), "") << "a secret belongs into a file";
+    const std::string file = (scratch.path() / "file").string();
+    const std::string link = (scratch.path() / "link").string();
+    std::ofstream(file) << "before";
+    std::filesystem::create_symlink("file", link);
+    EXPECT_EQ(replace_file(link, "after"), "");
+    EXPECT_TRUE(std::filesystem::is_symlink(link));
+    EXPECT_EQ(slurp(file), "after");
+    EXPECT_EQ(replace_file("/dev/null", "x"), "");
+    EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
 }
 
 }  // namespace

@@ -115,7 +115,7 @@ TEST(ReachCommand, WhatCannotBeWrittenIsSaid)
     const ReachOutcome built =
         jink_reach(scratch, "build " + vehicle("default") + " --profile reduced --speeds 0.5 --out nowhere/sets.hpp");
     EXPECT_EQ(built.status, 2);
-    EXPECT_EQ(built.err, "jink reach build: nowhere/sets.hpp cannot be written\n");
+    EXPECT_EQ(built.err, "jink reach build: nowhere/sets.hpp: cannot be opened: its folder does not exist\n");
     static_cast<void>(scratch.write("file", "in the way"));
     const ReachOutcome drawn =
         jink_reach(scratch, "measure " + vehicle("default") + " --profile reduced --speeds 0.5 --figures file/figures");

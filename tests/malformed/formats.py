@@ -64,6 +64,10 @@ areas:
 PARAMETERS = b"# of a test\nVEH_CRUISE,8\nJNK_LOOKAHEAD 10\nGEO_OFFSETS,4\n"
 KEY = b"0123456789abcdef" * 4 + b"\n"
 MESH = b"v 0 0 0\nv 4 0 0\nv 0 4 0\nv 0 0 4\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+STL = b"solid test\n" + b"".join(
+    b"facet normal 0 0 0\nouter loop\n" + b"".join(b"vertex %s\n" % corner for corner in corners) + b"endloop\nendfacet\n"
+    for corners in ((b"0 0 0", b"0 4 0", b"4 0 0"), (b"0 0 0", b"4 0 0", b"0 0 4"), (b"0 0 0", b"0 0 4", b"0 4 0"), (b"4 0 0", b"0 4 0", b"0 0 4"))
+) + b"endsolid test\n"
 DAA = b"""NAME sx sy sz vx vy vz time
 [none] [m] [m] [m] [m/s] [m/s] [m/s] [s]
 Own 0 0 100 5 0 0 0
@@ -77,6 +81,15 @@ SEEDS = b"11\n12\n"
 def some(damages):
     """A third of them, for one more program that reads a format by the same reader."""
     return lambda: (damage for i, damage in enumerate(damages()) if i % 3 == 0 or i < 10)
+
+
+def damages_of_scenario():
+    yield from damages_of_yaml(SCENARIO, "duration: 25", "duration", "mission:\n  - [0, 0, 30]\n  - [150, 0, 30]\n")()
+    last = SCENARIO.count(b"\n") + 1
+    for name, parameter in (("a parameter out of range", "JNK_MODE: 5"), ("an odd number", "GEO_OFFSETS: 3"), ("a parameter below its range", "JNK_LOOKAHEAD: 0"),
+                            ("a parameter that is no whole number", "JNK_MODE: 0.5"), ("parameters that do not fit together", "{JNK_BOUNDS: 3, JNK_FLOOR: 30, JNK_CEILING: 30}")):
+        text = parameter if parameter.startswith("{") else f"{{{parameter}}}"
+        yield name, SCENARIO + f"parameters: {text}\n".encode(), last
 
 
 def with_lines(good, *damages):
@@ -98,7 +111,7 @@ def parameter_lines():
               "an empty value": ",", "a sign alone": "-", "two signs": "+-8", "an exponent alone": "e5"}
     return [*((name, f"VEH_CRUISE,{value}", 2) for name, value in values.items()),
             ("an unknown name", "VEH_CRUSE,8", 2), ("a name twice", "VEH_CRUISE,8\nVEH_CRUISE,8", 2), ("a name in small letters", "veh_cruise,8", 2),
-            ("no name", ",8", 2), ("a name alone", "VEH_CRUISE", 2), ("not a whole number", "GEO_OFFSETS,4.5", 4), ("an odd number", "GEO_OFFSETS,3", 4)]
+            ("no name", ",8", 2), ("a zero byte in a remark", "VEH_CRUISE,8 # a\0b", 2), ("a name alone", "VEH_CRUISE", 2), ("not a whole number", "GEO_OFFSETS,4.5", 4), ("an odd number", "GEO_OFFSETS,3", 4)]
 
 
 def damages_of_parameters():
@@ -117,24 +130,40 @@ def key_damages():
 
 
 def damages_of_mesh():
-    yield from mutations.of_any_file(MESH)
-    lines = MESH.decode().splitlines()
-    for name, text, number in (("NaN", "v nan 0 0", 1), ("infinity", "v inf 0 0", 1), ("too far", "v 1e9 0 0", 1), ("too large for a float", "v 1e39 0 0", 1),
-                               ("no faces", "", 0)):
-        changed = [*lines[: number - 1], text, *lines[number:]] if number else lines[:4]
-        yield name, ("\n".join(changed) + "\n").encode(), None
-    yield "another format of the same name", b"ply\nformat ascii 1.0\nend_header\n", None
-    yield "faces of points that are missing", MESH.replace(b"f 2 3 4", b"f 2 3 400"), None
-    yield "one triangle", b"\n".join(MESH.splitlines()[:4]) + b"\nf 1 1 1\n", None
-    yield "points on a line", b"v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", None
-    yield "UTF-16", MESH.decode().encode("utf-16"), None
+    yield from with_lines(MESH,
+        ("NaN", "v nan 0 0", 1), ("infinity", "v inf 0 0", 1), ("too large for a float", "v 1e39 0 0", 1), ("a letter in place of a digit", "v O 0 0", 1),
+        ("two points", "v 0 4.5.6 0", 3), ("a unit behind", "v 4m 0 0", 2), ("letters behind an exponent", "v 4e2x 0 0", 2), ("hexadecimal", "v 0x10 0 0", 2),
+        ("a decimal comma", "v 4,5 0 0", 2), ("a point alone in front", "v .5 0 0", 2), ("a number less", "v 1 2", 2), ("five numbers", "v 1 2 3 4 5", 2), ("texts", "v a b c", 2),
+        ("blanks in front", "  v 4 0 0", 2), ("a remark behind", "v 4 0 0 # four", 2), ("a line that goes on", "v 4 0 \\", 2), ("a zero byte", "v 4 0\0 0", 2),
+        ("a carriage return inside", "# a\rv 9 9 9", 2), ("an unknown keyword", "vertex 4 0 0", 2), ("a capital keyword", "V 4 0 0", 2), ("a face of two corners", "f 1 3", 5),
+        ("a face of a vertex that is missing", "f 2 3 5", 8), ("a face of vertex 0", "f 0 1 2", 5), ("a face too far back", "f -5 -2 -3", 5), ("a fraction in a face", "f 1.5 3 2", 5),
+        ("a text in a face", "f a b c", 5), ("three slashes in a face", "f 1/1/1/1 3 2", 5), ("a slash at the end in a face", "f 1/ 3 2", 5))()
+    yield "too far", MESH.replace(b"v 4 0 0", b"v 1e9 0 0"), 0
+    yield "no faces", MESH[: MESH.index(b"f")], 0
+    yield "another format of the same name", b"ply\nformat ascii 1.0\nend_header\n", 1
+    yield "one triangle", b"\n".join(MESH.splitlines()[:4]) + b"\nf 1 1 1\n", 0
+    yield "points on a line", b"v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", 0
+
+
+def damages_of_stl():
+    text = STL.decode()
+    yield from with_lines(STL,
+        ("no solid", "a test", 1), ("NaN", "vertex nan 0 0", 4), ("a number less", "vertex 0 0", 4), ("a number more", "vertex 0 0 0 0", 4), ("a text", "vertex x 0 0", 4),
+        ("a unit behind", "vertex 0m 0 0", 4), ("two points", "vertex 0.1.2 0 0", 4), ("too large for a float", "vertex 1e39 0 0", 4), ("a keyword in capitals", "FACET NORMAL 0 0 0", 2),
+        ("no normal", "facet 0 0 0", 2), ("no loop", "outer", 3), ("two lines in one", "outer loop vertex 0 0 0", 3), ("another keyword", "vortex 0 0 0", 4))()
+    yield "a fourth vertex", text.replace("endloop", "vertex 9 9 9\nendloop", 1).encode(), 7
+    yield "a vertex less", text.replace("vertex 0 0 0\n", "", 1).encode(), 6
+    yield "no end of a facet", text.replace("endfacet\n", "", 1).encode(), 8
+    yield "no end of the solid", text.replace("endsolid test\n", "").encode(), text.count("\n") - 1
+    yield "cut off in a facet", text[: text.rindex("endloop")].encode(), None
 
 
 def damages_of_daa():
     yield from with_lines(DAA,
         ("NaN", "Own nan 0 100 5 0 0 0", 3), ("infinity", "Own inf 0 100 5 0 0 0", 3), ("a text", "Own x 0 100 5 0 0 0", 3),
         ("a field less", "Own 0 0 100 5 0 0", 3), ("a field more", "Own 0 0 100 5 0 0 0 0", 3), ("a unit behind", "Own 0m 0 100 5 0 0 0", 3),
-        ("too large for a double", "Own 1e999 0 100 5 0 0 0", 3), ("an unknown unit", "[none] [furlong] [m] [m] [m/s] [m/s] [m/s] [s]", 2),
+        ("too large for a double", "Own 1e999 0 100 5 0 0 0", 3), ("an absurd number", "Own 1e300 0 100 5 0 0 0", 3), ("hexadecimal", "Own 0x10 0 100 5 0 0 0", 3),
+        ("a zero byte in a name", "O\0wn 0 0 100 5 0 0 0", 3), ("a zero byte in a number", "Own 0\0x 0 100 5 0 0 0", 3), ("an unknown unit", "[none] [furlong] [m] [m] [m/s] [m/s] [m/s] [s]", 2),
         ("a wrong unit", "[none] [deg] [m] [m] [m/s] [m/s] [m/s] [s]", 2), ("a unit less", "[none] [m] [m] [m/s] [m/s] [m/s] [s]", 2),
         ("a column less", "NAME sx sy vx vy vz time", 1))()
 
@@ -206,6 +235,12 @@ def damages_of_run(good):
         yield "flights of another type", b'{"flights": 5}', None
         yield "a flight of another type", b'{"flights": [5]}', None
         yield "NaN", text.replace(":", ": NaN,", 1).encode(), None
+        for name, old, new in (("another format", '"jink-sim run"', '"jink-sim walk"'), ("another version", '"version":2', '"version":3'), ("a version as text", '"version":2', '"version":"2"'),
+                               ("no format", '"format":', '"form":'), ("a key twice", '"version":2', '"version":2,"version":2'), ("an absurd number", '"promise":', '"promise":1e300,"x":'),
+                               ("a number beyond a double", '"promise":', '"promise":1e999,"x":'), ("a number of 400 digits", '"promise":', f'"promise":{"9" * 400},"x":')):
+            if old not in text:
+                raise ValueError(f"the good run lacks {old}")
+            yield name, text.replace(old, new, 1).encode(), None
         yield "100 000 lists in each other", b"[" * 100_000, None
     return damages
 
@@ -236,7 +271,7 @@ def all_formats(build, work):
     model = (TOP / "tests/scenario/manned_test.cpp").read_text(encoding="utf-8").partition('R"MODEL(')[2].partition(')MODEL"')[0].encode()
     vehicle = damages_of_yaml(VEHICLE, "cruise_speed: 5", "cruise_speed", "\nmass: 3")
     problem = damages_of_yaml(PROBLEM, "distance: 30", "distance", "start: [0, 0, 30]\n")
-    scenario = damages_of_yaml(SCENARIO, "duration: 25", "duration", "mission:\n  - [0, 0, 30]\n  - [150, 0, 30]\n")
+    scenario = damages_of_scenario
     yield Format("vehicle (jink check)", ".yaml", VEHICLE, lambda f, o: [jink, "check", "--as", "vehicle", f], vehicle)
     yield Format("vehicle (jink tables)", ".yaml", VEHICLE, lambda f, o: [jink, "tables", f, "--out", o / "tables.hpp"], some(vehicle), checks_good=False)
     yield Format("vehicle (jinkd)", ".yaml", VEHICLE, lambda f, o: daemon("--vehicle", f, "--log", o), some(vehicle), runs_on=True, patience=0.5)
@@ -251,7 +286,8 @@ def all_formats(build, work):
     yield Format("signing key (jinkd)", ".key", KEY, lambda f, o: daemon("--signing-key", f, "--state", o / "state"), key_damages, has_lines=False, runs_on=True, patience=0.5)
     yield Format("map (jink mesh show)", ".map", jmap, lambda f, o: [jink, "mesh", "show", f], damages_of_map(jmap), has_lines=False)
     yield Format("map (jinkd)", ".map", jmap, lambda f, o: daemon("--map", f), some(damages_of_map(jmap)), has_lines=False, runs_on=True, patience=0.5)
-    yield Format("mesh (jink mesh build)", ".obj", MESH, lambda f, o: [jink, "mesh", "build", f, "--out", o / "map"], damages_of_mesh, has_lines=False)
+    yield Format("mesh (jink mesh build)", ".obj", MESH, lambda f, o: [jink, "mesh", "build", f, "--out", o / "map"], damages_of_mesh)
+    yield Format("mesh of facets (jink mesh build)", ".stl", STL, lambda f, o: [jink, "mesh", "build", f, "--out", o / "map"], damages_of_stl)
     yield Format("flight log (jink log)", ".ulg", log, lambda f, o: [jink, "log", f, "--csv", o / "csv"], damages_of_ulog(log), has_lines=False)
     yield Format("flight log (replay)", ".ulg", log, lambda f, o: [jink, "log", "--replay", f], damages_of_ulog(log), has_lines=False)
     yield Format("run (jink report)", ".json", run, lambda f, o: [jink, "report", f, "--out", o / "report.html"], damages_of_run(run), has_lines=False)

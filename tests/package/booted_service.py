@@ -6,7 +6,7 @@
 
 ROOT: a folder with the packages jink, systemd-sysv and dbus installed. A peer sends an autopilot's HEARTBEAT by UDP
 within the container's network. Tried: refusal of an empty line, start, end by SIGKILL, end by a hang (the watchdog's
-time), reload, what the service may see and write, stop, start at boot. Exit status 77: systemd-nspawn is missing or
+time), reload, what the service may see and write, that it only advises, stop, start at boot. Exit status 77: systemd-nspawn is missing or
 cannot boot here. Needs root. Python 3 standard library only.
 """
 import os
@@ -20,13 +20,14 @@ import time
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from mavlink_frames import AVOIDANCE, HEARTBEAT, encode, frames  # noqa: E402
+from mavlink_frames import AVOIDANCE, HEARTBEAT, frames  # noqa: E402
+from service_line import ASKING, mode_in  # noqa: E402
 
 PORT = 14540
-# Sends HEARTBEATs of an autopilot to jinkd for some seconds and writes what comes back.
+# Sends frames to jinkd again and again for some seconds and writes what comes back.
 PEER = """
 import socket, sys, time
-frame, port, seconds = bytes.fromhex(sys.argv[1]), int(sys.argv[2]), float(sys.argv[3])
+asking, port, seconds = bytes.fromhex(sys.argv[1]), int(sys.argv[2]), float(sys.argv[3])
 s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
 s.bind(("127.0.0.1", 14550))  # jinkd keeps to the peer that it has
 s.settimeout(0.05)
@@ -34,7 +35,7 @@ end, sent = time.monotonic() + seconds, 0.0
 while time.monotonic() < end:
     if time.monotonic() - sent > 0.2:
         sent = time.monotonic()
-        s.sendto(frame, ("127.0.0.1", port))
+        s.sendto(asking, ("127.0.0.1", port))
     try:
         sys.stdout.buffer.write(s.recv(65536))
     except OSError:
@@ -101,13 +102,15 @@ class Container:
                 return int(pid)
         return None
 
-    def hears(self, seconds=2.5):
-        """Whether a HEARTBEAT of jinkd answers the autopilot's."""
-        heartbeat = encode(HEARTBEAT, bytes([0, 0, 0, 0, 2, 3, 81, 4, 3]), 0, 1, 1)
+    def answer(self, seconds=2.5):
+        """What jinkd sends to an autopilot and a ground station that asks for its parameters."""
         # The container has no interpreter: the peer is this machine's, in the container's network.
-        got = subprocess.run(["nsenter", "--target", self.first, "--net", sys.executable, "-c", PEER, heartbeat.hex(), str(PORT), str(seconds)],
-                             capture_output=True, check=True).stdout
-        return (AVOIDANCE, HEARTBEAT) in (frame[:2] for frame in frames(got)[0])
+        return subprocess.run(["nsenter", "--target", self.first, "--net", sys.executable, "-c", PEER, ASKING.hex(), str(PORT), str(seconds)],
+                              capture_output=True, check=True).stdout
+
+    def hears(self):
+        """Whether a HEARTBEAT of jinkd answers the autopilot's."""
+        return (AVOIDANCE, HEARTBEAT) in (frame[:2] for frame in frames(self.answer())[0])
 
 
 def wait_for(condition, seconds):
@@ -154,8 +157,9 @@ def confined(c):
         return subprocess.run(["nsenter", "--target", str(pid), "--mount", *rights, *command], capture_output=True, text=True, check=False)
 
     own = (f"--setuid={user}", f"--setgid={user}")
-    check("its state folder can be written", inside("/bin/touch", "/var/lib/jink/tried", rights=own).returncode == 0)
-    inside("/bin/rm", "/var/lib/jink/tried")
+    for place in ("/var/lib/jink", "/var/log/jink"):
+        check(f"{place} can be written", inside("/bin/touch", f"{place}/tried", rights=own).returncode == 0)
+        inside("/bin/rm", f"{place}/tried")
     # As root, so that only the service's view of files can refuse.
     for place in ("/etc", "/usr", "/var", "/home", "/root"):
         check(f"nothing can be made in {place}", "Read-only" in inside("/bin/touch", f"{place}/tried").stderr)
@@ -189,6 +193,7 @@ def main():
         c.run("systemctl", "start", "jinkd")
         check("started", runs(c))
         check("it answers an autopilot's HEARTBEAT", c.hears())
+        check("it only advises: JNK_MODE is 1", mode_in(c.answer()) == 1.0)
         restarts(c)
         confined(c)
         before = c.pid()

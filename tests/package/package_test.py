@@ -2,13 +2,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tests of what the Debian packages are made of.
 
-    package_test.py unit|service|completion|man_pages|sbom|changelog --build FOLDER --version VERSION
+    package_test.py unit|service|examples|completion|man_pages|sbom|changelog --build FOLDER --version VERSION
 """
 import argparse
 import json
+import os
 import pathlib
+import pty
 import re
+import select
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -17,6 +21,7 @@ TOP = pathlib.Path(__file__).resolve().parents[2]
 PACKAGING = TOP / "toolchain/packaging"
 UNIT = PACKAGING / "debian/jink.jinkd.service"
 DEFAULTS = PACKAGING / "debian/jink.jinkd.default"
+PARAMS = PACKAGING / "debian/jinkd.param"  # /etc/jink/jinkd.param
 PROGRAMS = {"jinkd": "firmware/linux/jinkd", "jink": "toolchain/host/jink", "jink-sim": "toolchain/sim/jink-sim"}
 SKIPPED = 77
 # Greatest exposure by `systemd-analyze security`; docs/guides/packages.md states the figure.
@@ -49,6 +54,10 @@ def test_unit(build, _):
     said = verified(text, jinkd)
     assert said == "", said
     assert verified(text.replace("WatchdogSec=2", "WatchdogSec=soon"), jinkd), "a wrong value is not found"
+    # Names are looked up when the service starts; the majors of ttyACM and ttyUSB count before their drivers are loaded.
+    devices = re.findall(r"^DeviceAllow=(.*)$", text, re.M)
+    assert set(devices) >= {"char-tty* rw", "char-166 rw", "char-188 rw"}, devices
+    assert re.search(r"^LogsDirectory=jink$", text, re.M), "no folder for flight logs"
     said = run("systemd-analyze", "security", "--offline=true", UNIT).stdout
     exposure = re.search(r"Overall exposure level for \S+: ([\d.]+)", said)
     assert exposure, said
@@ -62,6 +71,7 @@ def test_service(build, _):
     unit, defaults = UNIT.read_text(encoding="utf-8"), DEFAULTS.read_text(encoding="utf-8")
     priority = int(re.search(r"--realtime (\d+)", defaults)[1])
     assert priority <= int(re.search(r"^LimitRTPRIO=(\d+)", unit, re.M)[1]), "--realtime of the defaults is beyond LimitRTPRIO"
+    assert re.search(r'^JINKD_OPTIONS=".*--params /etc/jink/jinkd\.param ', defaults, re.M), "the defaults do not name the parameter file"
     filtered = ["/usr/bin/python3", "-B", TOP / "tests/package/system_call_filter.py", UNIT]
     if shutil.which("systemd-analyze"):
         assert run(*filtered, "chrt", "--fifo", "1", "true").returncode == run("chrt", "--fifo", "1", "true").returncode
@@ -71,9 +81,28 @@ def test_service(build, _):
     with tempfile.TemporaryDirectory() as state:
         pathlib.Path(state).chmod(0o777)
         done = run(sys.executable, "-B", TOP / "tests/package/service_line.py", "--unit", UNIT, "--defaults", DEFAULTS,
-                   "--program", build / PROGRAMS["jinkd"], "--state", state)
+                   "--params", PARAMS, "--program", build / PROGRAMS["jinkd"], "--state", state)
     print(done.stdout + done.stderr)
     assert done.returncode == 0, "the line of the unit does not start jinkd"
+
+
+def test_examples(build, _):
+    """Airspace files of the package close areas in a running jinkd."""
+    listed = (PACKAGING / "debian/jink.examples").read_text(encoding="utf-8").split()
+    airspaces = [TOP / name for name in listed if name.startswith("firmware/airspace/")]
+    assert {file.name for file in airspaces} == {"example.yaml", "virtual.yaml"}, airspaces
+    for file in airspaces:
+        port, terminal = pty.openpty()
+        with tempfile.TemporaryDirectory() as folder:
+            summary = pathlib.Path(folder, "summary.json")
+            jinkd = subprocess.Popen([build / PROGRAMS["jinkd"], "--serial", os.ttyname(terminal), "--airspace", file, "--summary", summary],
+                                     stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+            select.select([port], [], [], 20)  # its first HEARTBEAT
+            jinkd.send_signal(signal.SIGTERM)
+            said = jinkd.communicate(timeout=30)[0]
+            assert jinkd.returncode == 0, f"{file.name}: {said}"
+            counted = json.loads(summary.read_text(encoding="utf-8"))
+        assert counted["areas_reported"] > 0 and counted["areas_refused"] == 0, f"{file.name}: {counted}"
 
 
 def helps(program, path=()):

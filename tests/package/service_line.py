@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Starts the line of jinkd.service on a pseudo-terminal and waits for READY, the watchdog's feed and a HEARTBEAT.
+"""Starts the line of jinkd.service on a pseudo-terminal and waits for READY, the watchdog's feed, a HEARTBEAT, and
+JNK_MODE 1: as installed, jink only advises.
 
-    service_line.py --unit FILE --defaults FILE [--program FILE] [--root FOLDER] [--state FOLDER]
+    service_line.py --unit FILE --defaults FILE [--params FILE] [--program FILE] [--root FOLDER] [--state FOLDER]
 
 As root, jinkd gets what the unit gives it: another user, no capability, and the limits of LimitRTPRIO and LimitMEMLOCK
 where the machine permits to raise them. Then --realtime of the defaults has to succeed. Outside of --root the unit's filter of system calls is in force. What
@@ -17,6 +18,7 @@ import select
 import shlex
 import shutil
 import socket
+import struct
 import subprocess
 import sys
 import tempfile
@@ -25,9 +27,22 @@ import tty
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from mavlink_frames import AVOIDANCE, HEARTBEAT, frames  # noqa: E402
+from mavlink_frames import AVOIDANCE, HEARTBEAT, encode, frames  # noqa: E402
 
 FILTER = pathlib.Path(__file__).resolve().with_name("system_call_filter.py")
+PARAM_REQUEST_LIST, PARAM_VALUE = 21, 22
+# An autopilot's HEARTBEAT, and a ground station that asks for all parameters.
+ASKING = encode(HEARTBEAT, bytes([0, 0, 0, 0, 2, 3, 81, 4, 3]), 0, 1, 1) + encode(PARAM_REQUEST_LIST, bytes([1, AVOIDANCE]), 0, 255, 190)
+
+
+def mode_in(stream):
+    """JNK_MODE of the PARAM_VALUEs in a stream; None: it has not come."""
+    for component, message, payload in frames(stream)[0]:
+        if (component, message) == (AVOIDANCE, PARAM_VALUE):
+            value, name = struct.unpack("<f4x16s", payload.ljust(25, b"\0")[:24])
+            if name.rstrip(b"\0") == b"JNK_MODE":
+                return value
+    return None
 
 
 def setting(text, name):
@@ -64,13 +79,18 @@ def line(unit, defaults, arguments, device, state):
             words.append(word.replace("${STATE_DIRECTORY}", state))
     if arguments.program:
         words[0] = arguments.program
+    if arguments.params:
+        words[words.index("--params") + 1] = arguments.params
     return words
 
 
 def wait_for(process, notify, port):
-    """Which of READY, WATCHDOG and HEARTBEAT came within ten seconds."""
-    missing, stream, end = {"READY=1", "WATCHDOG=1", "HEARTBEAT"}, b"", time.monotonic() + 10
+    """Which of READY, WATCHDOG, HEARTBEAT and JNK_MODE 1 did not come within ten seconds."""
+    missing, stream, end, asked = {"READY=1", "WATCHDOG=1", "HEARTBEAT", "JNK_MODE 1"}, b"", time.monotonic() + 10, 0.0
     while missing and time.monotonic() < end and process.poll() is None:
+        if time.monotonic() - asked > 0.5:
+            asked = time.monotonic()
+            os.write(port, ASKING)
         for ready in select.select([notify, port], [], [], 0.2)[0]:
             if ready is notify:
                 missing -= set(notify.recv(4096).decode().split("\n"))
@@ -78,6 +98,8 @@ def wait_for(process, notify, port):
                 stream += os.read(port, 4096)
         if (AVOIDANCE, HEARTBEAT) in (frame[:2] for frame in frames(stream)[0]):
             missing.discard("HEARTBEAT")
+        if mode_in(stream) == 1.0:
+            missing.discard("JNK_MODE 1")
     return missing
 
 
@@ -96,7 +118,7 @@ def check(arguments):
     command = line(unit, defaults, arguments, device, arguments.state)
     files = []
     if not arguments.root:
-        files = [command[0], arguments.unit, str(FILTER)]
+        files = [command[0], arguments.unit, str(FILTER), *([arguments.params] if arguments.params else [])]
         if shutil.which("systemd-analyze"):
             command = ["/usr/bin/python3", "-B", str(FILTER), arguments.unit, *command]
     if root:
@@ -138,6 +160,7 @@ def parse(words):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--unit", required=True)
     parser.add_argument("--defaults", required=True)
+    parser.add_argument("--params", help="parameter file in place of that of the defaults")
     parser.add_argument("--program", help="in place of the unit's")
     parser.add_argument("--root", help="folder of another system, entered by chroot")
     parser.add_argument("--state", default="/var/lib/jink", help="the unit's StateDirectory, writable for the user")
@@ -147,5 +170,5 @@ def parse(words):
 
 if __name__ == "__main__":
     found = check(parse(sys.argv[1:]))
-    print("\n".join(found) or "READY, watchdog and HEARTBEAT came")
+    print("\n".join(found) or "READY, watchdog, HEARTBEAT and JNK_MODE 1 came")
     sys.exit(1 if found else 0)

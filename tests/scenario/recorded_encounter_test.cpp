@@ -111,14 +111,22 @@ TEST(RecordedEncounterFile, RefusesWithItsLine)
     EXPECT_EQ(refusal_of_encounter("NAME sx sy sz vx vy time\n"), "some.daa:1: column vz is missing");
     EXPECT_EQ(refusal_of_encounter("# a remark\n\nsx sy sz vx vy vz time\n"), "some.daa:3: column name is missing");
     EXPECT_EQ(refusal_of_encounter(kLocalNames + "[none] [m] [furlong] [m] [m/s] [m/s] [m/s] [s]\n" + kTwoRows),
-              "some.daa:2: unit furlong of column sy is not known");
+              "some.daa:2: unit 'furlong' of column 'sy' is not known");
     EXPECT_EQ(refusal_of_encounter(kLocalNames + "[none] [m] [m] [m] [m/s] [deg] [m/s] [s]\n" + kTwoRows),
               "some.daa:2: unit deg is none of column vy");
     EXPECT_EQ(refusal_of_encounter(kLocalNames + "[none] [m] [m]\n" + kTwoRows), "some.daa:2: expected 8 units");
     EXPECT_EQ(refusal_of_encounter(units + "Own 0 0 0 1 1 1\n"), "some.daa:3: expected 8 fields");
-    EXPECT_EQ(refusal_of_encounter(units + "Own 0 x 0 1 1 1 0\n"), "some.daa:3: column sy: x is not a number");
-    EXPECT_EQ(refusal_of_encounter(units + "Own 0 0 0 1 nan 1 0\n"), "some.daa:3: column vy: nan is not a number");
-    EXPECT_EQ(refusal_of_encounter(units + "Own 0 0 0 1 1 1 1s\n"), "some.daa:3: column time: 1s is not a number");
+    EXPECT_EQ(refusal_of_encounter(units + "Own 0 x 0 1 1 1 0\n"),
+              "some.daa:3: column sy: 'x' is not a number from -1e13 to 1e13");
+    EXPECT_EQ(refusal_of_encounter(units + "Own 0 0 0 1 nan 1 0\n"),
+              "some.daa:3: column vy: 'nan' is not a number from -1e13 to 1e13");
+    EXPECT_EQ(refusal_of_encounter(units + "Own 0 0x10 0 1 1 1 0\n"),
+              "some.daa:3: column sy: '0x10' is not a number from -1e13 to 1e13");
+    EXPECT_EQ(refusal_of_encounter(units + "Own 0 1e300 0 1 1 1 0\n"),
+              "some.daa:3: column sy: '1e300' is not a number from -1e13 to 1e13");
+    EXPECT_EQ(refusal_of_encounter(units + std::string("Own\0 0 0 0 1 1 1 0\n", 19)), "some.daa:3: a zero byte");
+    EXPECT_EQ(refusal_of_encounter(units + "Own 0 0 0 1 1 1 1s\n"),
+              "some.daa:3: column time: '1s' is not a number from -1e13 to 1e13");
     EXPECT_EQ(refusal_of_encounter(units + kTwoRows + "Own 1 0 0 1 1 1 0\n"),
               "some.daa:5: a second fix of Own at 0.000000 s");
     EXPECT_EQ(refusal_of_encounter(units + "\" 0 0 0 1 1 1 0\n"), "some.daa:3: no aircraft is named before");

@@ -211,6 +211,21 @@ TEST(ScenarioFile, ParametersMustExist)
               "folder/some.yaml:4:15: parameters.JNK_SETTLE: 'soon' is not a number");
 }
 
+TEST(ScenarioFile, ParametersLieWithinTheirRangesAndFitTogether)
+{
+    const auto wrong = [](const std::string& parameter) {
+        return refusal(kMin + "parameters:\n  " + parameter + "\n");
+    };
+    const std::string at = "folder/some.yaml:4:";
+    EXPECT_EQ(wrong("JNK_MODE: 5"), at + "13: parameters.JNK_MODE: '5' is out of range: 0 to 2");
+    EXPECT_EQ(wrong("JNK_MODE: 1.5"), at + "13: parameters.JNK_MODE: '1.5' is not a whole number");
+    EXPECT_NE(wrong("JNK_LOOKAHEAD: 0").find(at + "18: parameters.JNK_LOOKAHEAD: '0' is out of range: "),
+              std::string::npos);
+    EXPECT_EQ(wrong("GEO_OFFSETS: 3"), at + "3: parameters: GEO_OFFSETS must be even");
+    EXPECT_EQ(wrong("GEO_T_LOW: 9"), at + "3: parameters: GEO_T_HIGH * 1.15 must be greater than GEO_T_LOW");
+    EXPECT_EQ(wrong("GEO_OFFSETS: 4"), "accepted");
+}
+
 TEST(ScenarioFile, AMissingFileIsSaidSo)
 {
     EXPECT_THROW(static_cast<void>(load_scenario("/nowhere/at/all.yaml")), BadScenario);

@@ -7,10 +7,12 @@
 #include <cstdio>
 #include <fstream>
 #include <memory>
+#include <sstream>
 #include <string>
 
 #include <nlohmann/json.hpp>
 
+#include "firmware/linux/param_store.hpp"
 #include "toolchain/host/campaign_command.hpp"
 #include "toolchain/host/commands.hpp"
 
@@ -48,7 +50,7 @@ void print_json(const CampaignResult& result, double seconds)
 void run_campaign(const CampaignOptions& options)
 {
     // Fails before the flights instead of after them.
-    if (!options.csv.empty() && !std::ofstream(options.csv)) {
+    if (!options.csv.empty() && !std::ofstream(options.csv, std::ios::app)) {
         std::fprintf(stderr, "campaign: %s cannot be written\n", options.csv.c_str());
         throw CLI::RuntimeError(kExitBadInput);
     }
@@ -90,10 +92,10 @@ int conclude_campaign(const CampaignOptions& options, const std::vector<StudyBlo
     const CampaignResult result = merge_study(blocks);
     (options.json ? print_json : print_table)(result, seconds);
     if (!options.csv.empty()) {
-        std::ofstream csv(options.csv);
+        std::ostringstream csv;
         write_rows(csv, blocks);
-        if (!csv.flush()) {
-            std::fprintf(stderr, "campaign: %s could not be written to its end\n", options.csv.c_str());
+        if (const std::string wrong = files::replace_file(options.csv, csv.view()); !wrong.empty()) {
+            std::fprintf(stderr, "campaign: %s: %s\n", options.csv.c_str(), wrong.c_str());
             return kExitBadInput;
         }
     }

@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "firmware/app/takeover.hpp"
 #include "firmware/linux/flight_log/topics.hpp"
 #include "firmware/linux/flight_log/ulog_reader.hpp"
 #include "toolchain/host/flight_page.hpp"
+#include "toolchain/host/flight_page_samples.hpp"
 #include "toolchain/host/log_fields.hpp"
 #include "toolchain/host/log_summary.hpp"
 #include "toolchain/host/nominal_log.hpp"
@@ -22,18 +25,6 @@ using geometric::CandidateStatus;
 
 constexpr double kPeriod = 0.1;           // of samples [s]
 constexpr double kLongest = 24 * 3600.0;  // of a flight [s]
-constexpr double kTrackLife = 0.5;        // a track is logged every 0.2 s; without news for longer it is gone [s]
-
-struct Sighting {
-    double time = 0.0;
-    std::array<double, 3> position{}, velocity{};
-    double radius = 0.0, half_height = 0.0;
-};
-
-struct OwnAt {
-    double time = 0.0;
-    std::array<double, 3> position{}, velocity{};
-};
 
 struct StepAt {
     double time = 0.0;
@@ -51,32 +42,6 @@ void push(Columns3& columns, const std::array<double, 3>& point)
 
 std::array<double, 3> unknown() { return {kUnknown, kUnknown, kUnknown}; }
 
-/// Where something was at a time, from what is known of it before and its velocity then.
-template <class Known>
-std::array<double, 3> carried(const Known& known, double time)
-{
-    std::array<double, 3> place{};
-    for (std::size_t k = 0; k < 3; ++k) {
-        place[k] = known.position[k] + (time - known.time) * known.velocity[k];
-    }
-    return place;
-}
-
-/// The last item at or before a time, none where that is older than `life`. Items are in order of time.
-template <class Item>
-const Item* latest(const std::vector<Item>& items, double time, double life)
-{
-    const auto after =
-        std::upper_bound(items.begin(), items.end(), time, [](double t, const Item& item) { return t < item.time; });
-    return after == items.begin() || time - (after - 1)->time > life ? nullptr : &*(after - 1);
-}
-
-double distance_to_surface(const std::array<double, 3>& own, const std::array<double, 3>& at, const Sighting& track)
-{
-    const double up = std::max(0.0, std::abs(own[2] - at[2]) - track.half_height);
-    return std::hypot(own[0] - at[0], own[1] - at[1], up) - track.radius;
-}
-
 /// Reads one log and keeps what the page shows.
 class LogFlight {
 public:
@@ -86,6 +51,7 @@ public:
 private:
     void read();
     void note_data(const ulog::Format& format, std::span<const std::byte> content);
+    void note_parameter(std::span<const std::byte> content);
     void note_step(const LogFields& step, double time);
     void note_decision(const LogFields& topic, double time);
     void note_candidate(const LogFields& topic, double time);
@@ -102,6 +68,7 @@ private:
     struct Made {
         std::array<double, 3> start{}, to{};  ///< of the curves of its candidates; not finite: unknown
         double candidates = kUnknown;         ///< of its plan; unknown: the log does not say
+        double max_cost = 1.0;                ///< GEO_MAX_COST then
         bool has_chosen = false;              ///< one of them
     };
 
@@ -112,12 +79,11 @@ private:
     double last_ = 0.0;
     std::vector<OwnAt> own_;
     std::vector<StepAt> steps_;
-    std::map<unsigned, std::vector<Sighting>> tracks_;
-    std::map<unsigned, std::size_t> decision_of_;  // number in the log: index in flight_.decisions
-    std::map<unsigned, Made> made_;                // by the number too; those whose message is there
-    NominalLog nominal_;
+    std::map<std::pair<unsigned, unsigned>, std::vector<Sighting>> tracks_;  // by id and instance
+    std::map<unsigned, std::size_t> decision_of_;                    // number in the log: index in flight_.decisions
+    std::map<unsigned, Made> made_;                                  // by the number too; those whose message is there
+    std::vector<std::pair<float, NominalLog>> nominal_{{8.0F, {}}};  // one for each value of JNK_LOOKAHEAD
     ShapeLog shapes_;
-    double lookahead_ = 8.0;
     unsigned control_ = 0xFFFF;
 };
 
@@ -166,7 +132,7 @@ void LogFlight::note_decision(const LogFields& topic, double time)
 {
     const unsigned number = topic.code("decision");
     static_cast<void>(decision(number, time));
-    made_[number] = {topic.vector("start"), topic.vector("own_at_closest"), topic.number("candidates"),
+    made_[number] = {topic.vector("start"), topic.vector("own_at_closest"), topic.number("candidates"), max_cost_,
                      topic.number("chosen") < flightlog::DecisionTopic::kNoneChosen};
 }
 
@@ -204,7 +170,7 @@ void LogFlight::settle_fates()
                                            [](const PageCandidate& c) { return c.fate == Fate::chosen; });
         for (PageCandidate& c : decision.candidates) {
             if (c.fate == Fate::budget_spent) {
-                c.fate = fate_of_unchecked(std::isfinite(c.cost), found, c.cost > max_cost_);
+                c.fate = fate_of_unchecked(std::isfinite(c.cost), found, c.cost > made.max_cost);
             }
         }
     }
@@ -238,18 +204,36 @@ void LogFlight::note_data(const ulog::Format& format, std::span<const std::byte>
     } else if (format.name == "jink_own") {
         own_.push_back({*time, fields.vector("position"), fields.vector("velocity")});
     } else if (format.name == "jink_track") {
-        tracks_[fields.code("id")].push_back({*time, fields.vector("position"), fields.vector("velocity"),
-                                              fields.number("radius"), fields.number("half_height")});
+        tracks_[{fields.code("id"), fields.code("instance")}].push_back(
+            {*time, fields.vector("position"), fields.vector("velocity"), fields.number("radius"),
+             fields.number("half_height")});
     } else if (format.name == "jink_decision") {
         note_decision(fields, *time);
     } else if (format.name == "jink_candidate") {
         note_candidate(fields, *time);
     } else if (format.name == "jink_nominal") {
-        nominal_.note(fields, *time);
+        nominal_.back().second.note(fields, *time);
     } else if (format.name == "jink_obstacle") {
         shapes_.note_obstacle(fields, *time);
     } else if (format.name == "jink_area") {
         shapes_.note_area(fields, *time);
+    }
+}
+
+/// Of the definitions, or a change in the flight: what the log has from here on was decided by it.
+void LogFlight::note_parameter(std::span<const std::byte> content)
+{
+    const auto keyed = ulog::parse_keyed(content, ulog::Type::parameter);
+    const double value = keyed ? static_cast<double>(keyed->number().value_or(NAN)) : kUnknown;
+    if (!std::isfinite(value)) {
+        return;
+    }
+    if (keyed->name == "JNK_HALF_XY" && steps_.empty()) {
+        flight_.safety_distance = value;
+    } else if (keyed->name == "GEO_MAX_COST") {
+        max_cost_ = value;
+    } else if (keyed->name == "JNK_LOOKAHEAD") {
+        nominal_.emplace_back(static_cast<float>(value), NominalLog());
     }
 }
 
@@ -277,9 +261,9 @@ void LogFlight::sample(PageFlight& flight) const
 
 void LogFlight::add_tracks(PageFlight& flight) const
 {
-    for (const auto& [id, sightings] : tracks_) {
+    for (const auto& [key, sightings] : tracks_) {
         PageThreat threat;
-        threat.name = "track " + std::to_string(id);
+        threat.name = track_name(key.first, key.second);
         threat.radius = std::max(0.0, sightings.front().radius);
         threat.half_height = std::max(0.0, sightings.front().half_height);
         threat.moves = true;
@@ -318,6 +302,8 @@ void LogFlight::read()
         const std::span<const std::byte> content = message->content;
         if (message->type == ulog::Type::data) {
             note_data(*log.topic(ulog::read_number<std::uint16_t>(content)), content.subspan(2));
+        } else if (message->type == ulog::Type::parameter) {
+            note_parameter(content);
         } else if (message->type == ulog::Type::text && !steps_.empty()) {
             note_text(content);
         }
@@ -332,14 +318,6 @@ void LogFlight::read()
     if (steps_.empty()) {
         refuse("no step of jinkd (topic jink_step) before byte " + std::to_string(log.offset()));
     }
-    const auto parameter = [&](const char* name) {
-        const auto found = log.parameters().find(name);
-        const auto value = found == log.parameters().end() ? std::nullopt : found->second.number();
-        return value ? static_cast<double>(*value) : kUnknown;
-    };
-    flight_.safety_distance = parameter("JNK_HALF_XY");
-    max_cost_ = std::isnan(parameter("GEO_MAX_COST")) ? max_cost_ : parameter("GEO_MAX_COST");
-    lookahead_ = std::isnan(parameter("JNK_LOOKAHEAD")) ? lookahead_ : parameter("JNK_LOOKAHEAD");
     flight_.origin = "flight log, " + log_text(log.info("sys_name")) + " " + log_text(log.info("ver_sw"));
 }
 
@@ -352,13 +330,15 @@ PageFlight LogFlight::page()
     sample(flight_);
     add_tracks(flight_);
     flight_.shapes = shapes_.shapes();
-    flight_.nominal = nominal_.curves(
-        [&](double time) {
-            const OwnAt* const own = latest(own_, time, kTrackLife);
-            const std::array<double, 3> at = own != nullptr ? carried(*own, time) : unknown();
-            return Vec3(static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2]));
-        },
-        static_cast<float>(lookahead_));
+    const auto own_at = [&](double time) {
+        const OwnAt* const own = latest(own_, time, kTrackLife);
+        const std::array<double, 3> at = own != nullptr ? carried(*own, time) : unknown();
+        return Vec3(static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2]));
+    };
+    for (const auto& [lookahead, log] : nominal_) {
+        std::vector<PageNominal> curves = log.curves(own_at, lookahead);
+        std::move(curves.begin(), curves.end(), std::back_inserter(flight_.nominal));
+    }
     if (flight_.least == flight_.least) {
         flight_.events.push_back({flight_.least_time, "closest", "closest to " + flight_.least_threat});
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Flights of jink-sim: run.json (tests/scenario/README.md describes its layout).
+// Flights of jink-sim: run.json (tests/scenario/README.md describes its layout). Another format or version, a key that
+// comes twice and a number beyond kMaxShown are refused, as is a value of another type; a flight may lack any key.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "firmware/linux/complaint.hpp"
 #include "toolchain/host/flight_page.hpp"
 
 namespace jink::host {
@@ -58,7 +60,11 @@ public:
         if (!value_->is_number()) {
             refuse("expected a number");
         }
-        return value_->get<double>();
+        const auto value = value_->get<double>();
+        if (!(std::abs(value) <= kMaxShown)) {
+            refuse("expected a number from -1e7 to 1e7");
+        }
+        return value;
     }
     [[nodiscard]] std::string text(const std::string& absent = "") const
     {
@@ -319,6 +325,36 @@ PageFlight read_flight(const Node& node)
     return flight;
 }
 
+/// The JSON of a file, without a key that comes twice in an object.
+json parse(std::ifstream& in, const std::string& file)
+{
+    const auto place = [&] {
+        in.clear();
+        return file + ": near byte " + std::to_string(in.tellg());
+    };
+    std::vector<std::set<std::string>> keys;  // of each object that is open
+    const auto note = [&](int, json::parse_event_t event, const json& parsed) {
+        if (event == json::parse_event_t::object_start) {
+            keys.emplace_back();
+        } else if (event == json::parse_event_t::object_end) {
+            keys.pop_back();
+        } else if (event == json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second) {
+            throw BadFlight(place() + ": key " + files::in_quotes(parsed.get<std::string>()) + " comes twice");
+        }
+        return true;
+    };
+    try {
+        return json::parse(in, note);
+    } catch (const json::parse_error& error) {
+        constexpr std::size_t kLongest = 200;
+        const std::string text = error.what();
+        const std::size_t at = text.find("] ");
+        throw BadFlight(file + ": is not JSON: " + text.substr(at == std::string::npos ? 0 : at + 2, kLongest));
+    } catch (const json::exception&) {
+        throw BadFlight(place() + ": expected a number that double precision holds");
+    }
+}
+
 }  // namespace
 
 PageSource read_run(const std::filesystem::path& file)
@@ -327,15 +363,14 @@ PageSource read_run(const std::filesystem::path& file)
     if (!in || !std::filesystem::is_regular_file(file)) {
         throw BadFlight(file.string() + ": cannot be read; expected a run of jink-sim or a flight log of jinkd");
     }
-    json run;
-    try {
-        run = json::parse(in);
-    } catch (const json::exception& error) {
-        const std::string text = error.what();
-        const std::size_t at = text.find("] ");
-        throw BadFlight(file.string() + ": is not JSON: " + (at == std::string::npos ? text : text.substr(at + 2)));
-    }
+    const json run = parse(in, file.string());
     const Node top(&run, file.string());
+    if (run.is_object() && (!run.contains("format") || run["format"] != "jink-sim run")) {
+        top.refuse("format: expected 'jink-sim run'");
+    }
+    if (run.is_object() && (!run.contains("version") || run["version"] != 2)) {
+        top.refuse("version: expected 2");
+    }
     if (!run.is_object() || !run.contains("flights") || !run["flights"].is_array()) {
         top.refuse("holds no list of flights");
     }

@@ -6,8 +6,9 @@
 #include <cctype>
 #include <charconv>
 #include <cstdio>
-#include <fstream>
+#include <filesystem>
 
+#include "firmware/linux/param_store.hpp"
 #include "toolchain/host/commands.hpp"
 
 namespace jink::host {
@@ -60,6 +61,13 @@ std::string identifier_of(const std::string& name)
     return out.empty() || std::isdigit(static_cast<unsigned char>(out.front())) != 0 ? std::string() : out;
 }
 
+bool names_tables(const std::string& name)
+{
+    return !identifier_of(name).empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+        return c < 128 && (std::isalnum(c) != 0 || c == ' ' || c == '-' || c == '_' || c == '.');
+    });
+}
+
 [[noreturn]] void refuse(const std::string& command, const std::string& why)
 {
     std::fprintf(stderr, "jink %s: %s\n", command.c_str(), why.c_str());
@@ -76,10 +84,7 @@ files::Vehicle read_named_vehicle(const std::string& command, const std::string&
     if (!vehicle) {
         throw CLI::RuntimeError(kExitBadInput);
     }
-    if (identifier_of(vehicle->name).empty() ||
-        !std::all_of(vehicle->name.begin(), vehicle->name.end(), [](unsigned char c) {
-            return c < 128 && (std::isalnum(c) != 0 || c == ' ' || c == '-' || c == '_' || c == '.');
-        })) {
+    if (!names_tables(vehicle->name)) {
         refuse(command, file + ": no C++ name can be made of the vehicle's name " + files::in_quotes(vehicle->name));
     }
     return *std::move(vehicle);
@@ -87,11 +92,41 @@ files::Vehicle read_named_vehicle(const std::string& command, const std::string&
 
 void write_whole(const std::string& command, const std::string& file, const std::string& text)
 {
-    std::ofstream out(file, std::ios::binary);
-    out << text;
-    out.flush();
-    if (!out) {
-        refuse(command, file + " cannot be written");
+    if (const std::string wrong = files::replace_file(file, text); !wrong.empty()) {
+        refuse(command, file + ": " + wrong);
+    }
+}
+
+/// Also of a file that does not exist yet.
+static std::filesystem::path whole_path(const std::string& name)
+{
+    std::error_code error;
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(name, error), error);
+}
+
+void check_outputs(const std::string& command, const std::vector<std::string>& inputs,
+                   const std::vector<std::string>& outputs)
+{
+    std::vector<std::string> taken = inputs;
+    for (const std::string& output : outputs) {
+        std::error_code error;
+        const std::filesystem::path folder = std::filesystem::path(output).parent_path();
+        if (output.empty() || (std::filesystem::exists(output, error) && std::filesystem::is_other(output, error))) {
+            continue;  // nothing, or a device
+        }
+        if (std::filesystem::is_directory(output, error) ||
+            !std::filesystem::is_directory(folder.empty() ? "." : folder, error)) {
+            refuse(command,
+                   output + ": cannot be opened: " +
+                       (std::filesystem::is_directory(output, error) ? "it is a folder" : "its folder does not exist"));
+        }
+        for (const std::string& other : taken) {
+            if (!other.empty() &&
+                (std::filesystem::equivalent(output, other, error) || whole_path(output) == whole_path(other))) {
+                refuse(command, output + ": cannot be written: it is the same file as " + other);
+            }
+        }
+        taken.push_back(output);
     }
 }
 

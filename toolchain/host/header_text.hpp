@@ -40,9 +40,19 @@ void append_array(std::string& out, const std::string& type, const std::string& 
 /// first.
 [[nodiscard]] std::string identifier_of(const std::string& name);
 
+/// True for a name of ASCII letters, digits, blanks, `-`, `_` and `.` that converts to a C++ identifier: such a name
+/// may stand in a C++ text.
+[[nodiscard]] bool names_tables(const std::string& name);
+
 /// The vehicle of a file; its name must convert to a C++ identifier. Complaints go to standard error.
 /// @throws CLI::RuntimeError with kExitBadInput
 [[nodiscard]] files::Vehicle read_named_vehicle(const std::string& command, const std::string& file);
+/// Refuses outputs that have no folder, or are the same file as an input or as another output. Called before the work,
+/// so that nothing is written then. Empty names are passed over; devices may come twice.
+/// @throws CLI::RuntimeError with kExitBadInput
+void check_outputs(const std::string& command, const std::vector<std::string>& inputs,
+                   const std::vector<std::string>& outputs);
+/// Replaces the file as a whole: an earlier one stays as it is when the new one cannot be written.
 /// @throws CLI::RuntimeError with kExitBadInput when the file cannot be written
 void write_whole(const std::string& command, const std::string& file, const std::string& text);
 /// One line on standard error, `jink COMMAND: why`.

@@ -107,8 +107,10 @@ void print_result(const flightlog::ReplayResult& r)
     if (!r.incomplete.empty()) {
         std::cout << "not exact from step " << r.steps << " on: " << r.incomplete << "\n";
     }
+    if (r.steps == 0 && r.difference.empty()) {
+        stop(kExitBadInput, "nothing to replay: the log holds no step");
+    }
     if (!r.is_identical()) {
-        std::cout << (r.steps == 0 && r.difference.empty() ? "nothing to replay\n" : "");
         throw CLI::RuntimeError(kExitStop);
     }
     std::cout << "bit-identical" << (r.was_shut_down ? "" : ", as far as the log goes") << "\n";
@@ -144,6 +146,9 @@ void replay(const LogCommand& command)
             stop(kExitBadInput, command.files[i] + ": " + std::string(ulog::to_string(log.end())));
         }
         goes_on = flight->play(log);
+        if (options.map != nullptr && log.info("jink_map") == "none") {
+            stop(kExitBadInput, command.files[i] + ": the flight had no map: --map is of another one");
+        }
         if (goes_on) {
             print_damage(command.files[i], log);
         }

@@ -2,10 +2,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <fstream>
-#include <memory>
+#include <set>
 #include <stdexcept>
+#include <utility>
 
+#include "firmware/linux/param_store.hpp"
 #include "toolchain/host/log_summary.hpp"
 
 namespace jink::host {
@@ -70,40 +71,53 @@ std::string line_of(const ulog::Format& format, std::span<const std::byte> conte
     return line + "\n";
 }
 
-/// One file per topic, opened with its first line.
+constexpr const char* kTexts = "texts";
+
+/// One file per instance of a topic, written as a whole at the end.
 class CsvFiles {
 public:
-    explicit CsvFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
+    /// A topic, and which of its instances (multi_id).
+    using Instance = std::pair<std::string, unsigned>;
+    /// The logged texts, beside the topics.
+    static Instance logged() { return {"", 0}; }
 
-    void write(const std::string& topic, const std::string& heading, const std::string& line)
+    void write(const Instance& of, const std::string& heading, const std::string& line)
     {
-        auto& file = files_[topic];
-        if (file == nullptr) {
-            std::string name = topic;
-            std::replace(name.begin(), name.end(), '/', '_');
-            file = std::make_unique<std::ofstream>(folder_ / (name + ".csv"));
-            *file << heading;
+        std::string& text = texts_[of];
+        if (text.empty()) {
+            text = heading;
+            names_[of] = of == logged() ? kTexts : name_of(of);
         }
-        *file << line;
+        text += line;
         ++lines_;
-        if (!*file) {
-            throw std::runtime_error((folder_ / (topic + ".csv")).string() + " cannot be written");
-        }
     }
-    std::uint64_t finish()
+    std::uint64_t finish(const std::filesystem::path& folder) const
     {
-        for (auto& [topic, file] : files_) {
-            file->close();
-            if (!*file) {
-                throw std::runtime_error((folder_ / (topic + ".csv")).string() + " cannot be written");
+        for (const auto& [of, text] : texts_) {
+            const std::filesystem::path file = folder / (names_.at(of) + ".csv");
+            if (const std::string wrong = files::replace_file(file.string(), text); !wrong.empty()) {
+                throw std::runtime_error(file.string() + ": " + wrong);
             }
         }
         return lines_;
     }
 
 private:
-    std::filesystem::path folder_;
-    std::map<std::string, std::unique_ptr<std::ofstream>> files_;
+    /// A name that no other instance has: a/b and a_b are two topics, and a topic may be called texts.
+    std::string name_of(const Instance& of)
+    {
+        std::string name = of.first;
+        std::replace(name.begin(), name.end(), '/', '_');
+        name += of.second == 0 ? "" : "_" + std::to_string(of.second);
+        while (!taken_.insert(name).second) {
+            name += "_";
+        }
+        return name;
+    }
+
+    std::map<Instance, std::string> texts_;
+    std::map<Instance, std::string> names_;
+    std::set<std::string> taken_{kTexts};
     std::uint64_t lines_ = 0;
 };
 
@@ -146,23 +160,27 @@ std::string log_value(std::string_view type, std::span<const std::byte> bytes)
 
 std::uint64_t write_log_csv(ulog::Reader& log, const std::filesystem::path& folder)
 {
-    CsvFiles files(folder);
+    CsvFiles files;
+    std::map<std::uint16_t, unsigned> instances;  // of each id of a topic
     while (const auto message = log.next()) {
         const std::span<const std::byte> content = message->content;
-        if (message->type == ulog::Type::data) {
-            const ulog::Format& format = *log.topic(ulog::read_number<std::uint16_t>(content));
-            files.write(format.name, heading(format), line_of(format, content.subspan(2)));
+        if (message->type == ulog::Type::subscription) {
+            instances[ulog::read_number<std::uint16_t>(content.subspan(1))] = static_cast<unsigned>(content[0]);
+        } else if (message->type == ulog::Type::data) {
+            const auto id = ulog::read_number<std::uint16_t>(content);
+            const ulog::Format& format = *log.topic(id);
+            files.write({format.name, instances[id]}, heading(format), line_of(format, content.subspan(2)));
         } else if (message->type == ulog::Type::text) {
             std::string text = log_text(ulog::text_of(content.subspan(9)));
             for (std::size_t at = 0; (at = text.find('"', at)) != std::string::npos; at += 2) {
                 text.insert(at, "\"");
             }
-            files.write("texts", "timestamp,level,text\n",
-                        log_value("uint64_t", content.subspan(1)) + "," + static_cast<char>(content[0]) + ",\"" + text +
+            files.write(CsvFiles::logged(), "timestamp,level,text\n",
+                        log_value("uint64_t", content.subspan(1)) + "," + log_level(content[0]) + ",\"" + text +
                             "\"\n");
         }
     }
-    return files.finish();
+    return files.finish(folder);
 }
 
 }  // namespace jink::host

@@ -58,8 +58,8 @@ void note_data(const ulog::Format& format, std::span<const std::byte> content, L
 void note_text(std::span<const std::byte> content, LogSummary& summary)
 {
     if (summary.lines.size() < kMaxLines) {
-        summary.lines.push_back({seconds_at(content.subspan(1)), static_cast<char>(content[0]),
-                                 log_text(ulog::text_of(content.subspan(9)))});
+        summary.lines.push_back(
+            {seconds_at(content.subspan(1)), log_level(content[0]), log_text(ulog::text_of(content.subspan(9)))});
     }
 }
 
@@ -71,6 +71,12 @@ std::string log_text(std::string_view text)
     std::replace_if(
         out.begin(), out.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
     return out;
+}
+
+char log_level(std::byte level)
+{
+    const char digit = static_cast<char>(level);
+    return digit >= '0' && digit <= '7' ? digit : '?';
 }
 
 LogSummary summarise_log(std::istream& in)

@@ -46,11 +46,15 @@ void print_log_summary(const std::string& name, const LogSummary& summary, std::
 
 /// Writes one file for each topic, TOPIC.csv, into a folder: the fields' names, then a line for each message. Arrays
 /// are columns of their own, but those of bytes, which are one column of hexadecimal digits. Texts go to texts.csv.
+/// Further instances of a topic (multi_id 1 and more) are TOPIC_1.csv and so on. A `/` becomes `_`; a name that another
+/// file has gets `_` behind it. Files are held in memory and written at the end, each replaced as a whole.
 /// @return lines written; throws std::runtime_error where a file cannot be written
 std::uint64_t write_log_csv(ulog::Reader& log, const std::filesystem::path& folder);
 
 /// The text with "?" for everything but printable ASCII.
 [[nodiscard]] std::string log_text(std::string_view text);
+/// The severity of a logged text, 0 to 7, or "?" for any other byte.
+[[nodiscard]] char log_level(std::byte level);
 /// Value of one element of a field, as text.
 [[nodiscard]] std::string log_value(std::string_view type, std::span<const std::byte> bytes);
 

@@ -3,8 +3,11 @@
 #include <exception>
 
 #include "toolchain/host/commands.hpp"
+#include "toolchain/sim/command_end.hpp"
 
-int main(int argc, char** argv)
+namespace {
+
+int run(int argc, char** argv)
 {
     CLI::App app{"jink: plans, checks files, runs studies and writes reports on the host."};
     app.set_version_flag("--version", "jink " JINK_VERSION);
@@ -27,9 +30,13 @@ int main(int argc, char** argv)
     } catch (const CLI::RuntimeError& end) {
         return end.get_exit_code();
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? jink::host::kExitGood : jink::host::kExitBadInput;
+        return jink::sim::end_of_parse(app, "jink", error);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "jink: %s\n", error.what());
         return jink::host::kExitBadInput;
     }
 }
+
+}  // namespace
+
+int main(int argc, char** argv) { return jink::sim::with_output("jink", run(argc, argv)); }

@@ -13,6 +13,7 @@
 #include "toolchain/host/header_text.hpp"
 #include "toolchain/host/mesh_text.hpp"
 #include "toolchain/host/script.hpp"
+#include "toolchain/sim/option_range.hpp"
 
 namespace jink::host {
 namespace {
@@ -44,7 +45,7 @@ auto refusing(const char* command, const std::string& file, const Work& work)
     try {
         return work();
     } catch (const mesh::CannotBuild& error) {
-        refuse(command, file + ": " + error.what());
+        refuse(command, files::to_string({error.line, error.column, error.what(), file}));
     }
 }
 
@@ -58,8 +59,9 @@ mesh::TriangleMesh mesh_of(const char* command, const MeshOptions& options)
 std::string name_of(const char* command, const MeshOptions& options)
 {
     const std::string name = options.name.empty() ? fs::path(options.file).stem().string() : options.name;
-    if (identifier_of(name).empty()) {
-        refuse(command, "'" + name + "' leaves nothing that a C++ name can be made of; give --name");
+    if (!names_tables(name)) {
+        refuse(command, "no C++ name can be made of " + files::in_quotes(name) +
+                            "; give --name, of letters, digits, blanks, '-', '_' and '.'");
     }
     return name;
 }
@@ -119,6 +121,7 @@ geometry::MapOrigin origin_of(const MeshOptions& options)
 
 void build_mesh(const MeshOptions& options)
 {
+    check_outputs(kBuildMesh, {options.file}, {options.out, options.header});
     const mesh::TriangleMesh mesh = mesh_of(kBuildMesh, options);
     const std::string name = name_of(kBuildMesh, options);
     mesh::Recipe recipe = options.recipe;
@@ -197,7 +200,7 @@ void add_reading(CLI::App& command, MeshOptions& options)
     command
         .add_option("--concavity", options.recipe.concavity, "of decompose: pieces stand out of the mesh by less [m]")
         ->capture_default_str()
-        ->check(CLI::PositiveNumber);
+        ->check(sim::positive());
     command.add_flag("--open", options.recipe.open, "take objects whose surface is not closed");
 }
 

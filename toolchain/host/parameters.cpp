@@ -6,9 +6,11 @@
 #include <stdexcept>
 #include <string>
 
-#include "firmware/linux/param_store.hpp"
+#include "firmware/linux/param_file.hpp"
 #include "toolchain/host/commands.hpp"
+#include "toolchain/host/header_text.hpp"
 #include "toolchain/host/parameter_metadata.hpp"
+#include "toolchain/sim/option_range.hpp"
 
 namespace jink::host {
 namespace {
@@ -33,6 +35,7 @@ std::string text_of(const ParametersOptions& options, const files::ParamValues& 
 
 void run_parameters(const ParametersOptions& options)
 {
+    check_outputs("parameters", {options.vehicle, options.params}, {options.out});
     files::Complaints complaints;
     const auto parameters = files::load_parameters(options.vehicle, options.params, complaints);
     for (const files::Complaint& complaint : complaints) {
@@ -48,10 +51,7 @@ void run_parameters(const ParametersOptions& options)
         }
         return;
     }
-    const std::string wrong = files::replace_file(options.out, text);
-    if (!wrong.empty()) {
-        throw std::runtime_error(options.out + ": " + wrong);
-    }
+    write_whole("parameters", options.out, text);
 }
 
 }  // namespace
@@ -75,7 +75,7 @@ void add_parameters(CLI::App& jink)
         ->check(CLI::IsMember({1, 3}));
     command->add_option("--system", options->system, "system id of the vehicle in a .params file")
         ->capture_default_str()
-        ->check(CLI::Range(1U, 255U));
+        ->check(sim::whole(1, 255));
     command->add_option("--out", options->out, "file to write; default standard output");
     command->callback([options] { run_parameters(*options); });
 }

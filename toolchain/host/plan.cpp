@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // jink plan: one planning problem, every candidate and the choice.
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <string>
 
 #include "core/avoid/settings.hpp"
 #include "toolchain/host/commands.hpp"
 #include "toolchain/host/plan_output.hpp"
+#include "toolchain/sim/option_range.hpp"
 
 namespace jink::host {
 namespace {
@@ -87,7 +89,7 @@ void add_plan(CLI::App& jink)
     command->add_flag("--points", options->points, "with the curve of every candidate (json)");
     command->add_option("--budget", options->budget, "units of work that the plan may take")
         ->capture_default_str()
-        ->check(CLI::PositiveNumber);
+        ->check(sim::whole(1, std::numeric_limits<std::uint32_t>::max()));
     command->callback([options] { run_plan(*options); });
 }
 

@@ -191,9 +191,8 @@ bool find_main(Reader& reader)
         return false;
     }
     if (flagged > 1 || (flagged == 0 && all > 1)) {
-        reader.complaints.push_back(
-            {0, 0, "exactly one threat or obstacle must say `main: true`, not " + std::to_string(flagged),
-             reader.root.file()});
+        reader.root.complain(reader.root.has("threats") ? "threats" : "obstacles",
+                             "exactly one threat or obstacle must say `main: true`, not " + std::to_string(flagged));
         return false;
     }
     out.main_is_obstacle = flagged == 1 ? reader.main_threats.empty() : out.threats.empty();

@@ -2,6 +2,7 @@
 // jink reach: a vehicle's reach sets, as tables for flash, measured and drawn.
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -10,6 +11,7 @@
 #include "toolchain/host/reach_sets_text.hpp"
 #include "toolchain/host/reach_study.hpp"
 #include "toolchain/host/script.hpp"
+#include "toolchain/sim/option_range.hpp"
 
 namespace jink::host {
 namespace {
@@ -44,6 +46,7 @@ rb::BuiltVehicle build_from(const char* command, const ReachOptions& options)
 
 void build_reach(const ReachOptions& options)
 {
+    check_outputs(kBuildReach, {options.file}, {options.out});
     const rb::BuiltVehicle built = build_from(kBuildReach, options);
     const char* const of = built.recipe.profile == rb::Profile::reduced ? "planes" : "chaotic";
     std::printf("%s: %zu bytes in %zu sets, profile %s: %s with spread %zu, up to %zu ways out at each side cell\n",
@@ -87,8 +90,10 @@ void add_recipe(CLI::App& command, ReachOptions& options)
         ->delimiter(',');
     command.add_option("--most-speed", options.recipe.most_speed, "upper end of the last speed segment")
         ->capture_default_str();
-    command.add_option("--most-bytes", options.recipe.most_bytes,
-                       "bytes that all tables may take, default 262144 (full) or 98304 (reduced)");
+    command
+        .add_option("--most-bytes", options.recipe.most_bytes,
+                    "bytes that all tables may take, default 262144 (full) or 98304 (reduced)")
+        ->check(sim::whole(1, std::numeric_limits<std::uint32_t>::max()));
 }
 
 }  // namespace

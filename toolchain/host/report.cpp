@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // jink report: one page about flights, from a run of jink-sim or a flight log of jinkd.
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -60,33 +58,18 @@ std::string viewer()
     return text.str();
 }
 
-/// Under another name first: a page is whole, or not there.
-void write(const fs::path& file, const std::string& page)
-{
-    const fs::path part = file.string() + ".part";
-    std::ofstream out(part, std::ios::binary);
-    out << page;
-    out.close();
-    std::error_code error;
-    if (out) {
-        fs::rename(part, file, error);
-    }
-    if (!out || error) {
-        const std::string why = error ? error.message() : std::strerror(errno);
-        fs::remove(part, error);
-        refuse("report", file.string() + " cannot be written: " + why);
-    }
-}
-
 void run_report(const ReportOptions& options)
 {
     std::vector<PageSource> sources;
     try {
+        std::vector<std::string> files;
         for (const std::string& input : options.inputs) {
-            sources.push_back(read(file_of(input)));
+            files.push_back(file_of(input).string());
+            sources.push_back(read(files.back()));
         }
-        const fs::path out = options.out.empty() ? page_beside(file_of(options.inputs.front())) : fs::path(options.out);
-        write(out, make_page(viewer(), sources));
+        const fs::path out = options.out.empty() ? page_beside(files.front()) : fs::path(options.out);
+        check_outputs("report", files, {out.string()});
+        write_whole("report", out.string(), make_page(viewer(), sources));
         std::cout << "Written: " << out.string() << "\n";
     } catch (const BadFlight& error) {
         refuse("report", error.what());

@@ -10,6 +10,7 @@
 #include "toolchain/host/header_text.hpp"
 #include "toolchain/host/scenes_study.hpp"
 #include "toolchain/host/script.hpp"
+#include "toolchain/sim/option_range.hpp"
 #include "toolchain/sim/scenario_file.hpp"
 
 namespace jink::host {
@@ -73,7 +74,7 @@ void add_scenes(CLI::App& jink)
         ->check(CLI::ExistingFile);
     command
         ->add_option("--seeds", options->seeds, "instead of the files' own seeds 1 to so many, and a summary of them")
-        ->check(CLI::Range(0, 100000));
+        ->check(sim::whole(0, 100000));
     command->add_option("--out", options->out, "draw each file's scene into this folder");
     command->add_option("--python", options->python, "a Python 3 with matplotlib")->capture_default_str();
     command->callback([options] { run_scenes(*options); });

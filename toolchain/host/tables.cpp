@@ -8,6 +8,7 @@
 #include "toolchain/host/commands.hpp"
 #include "toolchain/host/cost_tables.hpp"
 #include "toolchain/host/header_text.hpp"
+#include "toolchain/sim/option_range.hpp"
 
 namespace jink::host {
 namespace {
@@ -51,6 +52,7 @@ bool print_family(const cost::tables::Tables& tables, std::size_t family, const 
 
 void run_tables(const TablesOptions& options)
 {
+    check_outputs("tables", {options.file}, {options.out});
     const files::Vehicle vehicle = read_named_vehicle("tables", options.file);
     MadeTables made = make_tables(vehicle, options.waypoints);
     const cost::tables::Tables tables = made.view();
@@ -86,7 +88,7 @@ void add_tables(CLI::App& jink)
     command->add_option("--out", options->out, "write the tables to this C++ header");
     command->add_option("--waypoints", options->waypoints, "points of every curve")
         ->capture_default_str()
-        ->check(CLI::Range(std::size_t{8}, kMaxPathPoints));
+        ->check(sim::whole(8, kMaxPathPoints));
     command->add_flag("--check", options->check,
                       "prove the bounds on samples twice as dense as, and between, those that they come from");
     command->callback([options] { run_tables(*options); });

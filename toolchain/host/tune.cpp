@@ -7,6 +7,7 @@
 
 #include "toolchain/host/commands.hpp"
 #include "toolchain/host/tune_study.hpp"
+#include "toolchain/sim/option_range.hpp"
 
 namespace jink::host {
 namespace {
@@ -119,17 +120,17 @@ void add_tune(CLI::App& jink)
                 "combinations, the front of a grid, a fit, and the fit on fresh encounters");
     command->add_option("--out", options->out, "folder of the flights; what is finished there is not flown again")
         ->required();
-    command->add_option("--from", options->setup.from, "the first seed")->capture_default_str();
+    command->add_option("--from", options->setup.from, "the first seed")->capture_default_str()->check(sim::any_seed());
     command->add_option("--count", options->setup.count, "encounters to a combination")
         ->capture_default_str()
-        ->check(CLI::Range(std::size_t{2}, std::size_t{1'000'000}));
+        ->check(sim::whole(2, 1'000'000));
     command->add_option("--step", options->setup.step, "of the grid of weights")
         ->capture_default_str()
         ->check(CLI::IsMember({0.05, 0.1, 0.2}));
     command->add_option("--check", options->check, "fresh encounters for the fit; 0: none")
         ->capture_default_str()
-        ->check(CLI::Range(std::size_t{0}, std::size_t{1'000'000}));
-    command->add_option("--threads", options->threads, "default: one to a core")->check(CLI::Range(1U, 1024U));
+        ->check(sim::whole(0, 1'000'000));
+    command->add_option("--threads", options->threads, "default: one to a core")->check(sim::whole(1, 1024));
     command->callback([options] {
         if (options->check == 1) {
             throw CLI::ValidationError("--check", "0, or 2 and more");

@@ -7,6 +7,7 @@
 #include "core/geometric/planner.hpp"
 #include "toolchain/host/commands.hpp"
 #include "toolchain/host/waypoints_study.hpp"
+#include "toolchain/sim/option_range.hpp"
 
 namespace jink::host {
 namespace {
@@ -70,10 +71,10 @@ void add_waypoints(CLI::App& jink)
     command->add_option("vehicle", options->file, "vehicle file (YAML), default: the default vehicle");
     command->add_option("--waypoints", options->waypoints, "numbers to look at")
         ->capture_default_str()
-        ->check(CLI::Range(std::size_t{8}, kMaxPathPoints));
+        ->check(sim::whole(8, kMaxPathPoints));
     command->add_option("--problems", options->problems, "random problems to plan")
         ->capture_default_str()
-        ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000}));
+        ->check(sim::whole(1, 1'000'000));
     command->callback([options] { run_waypoints(*options); });
 }
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "toolchain/mesh/triangle_mesh.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <tuple>
@@ -11,6 +14,8 @@
 #include <assimp/scene.h>
 
 #include "core/geometry/mesh_map.hpp"
+#include "firmware/linux/complaint.hpp"
+#include "toolchain/mesh/mesh_lines.hpp"
 
 namespace jink::mesh {
 namespace {
@@ -70,6 +75,27 @@ void append(const aiMesh& part, const ReadOptions& options, Weld& weld, Triangle
     }
 }
 
+/// Refuses what Assimp would pass over.
+void check_lines(const std::filesystem::path& file)
+{
+    std::string kind = file.extension().string();
+    std::transform(kind.begin(), kind.end(), kind.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+    if (kind != ".obj" && kind != ".stl") {
+        throw CannotBuild("its name ends in neither .obj nor .stl");
+    }
+    std::ifstream in(file, std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    if (!in) {
+        throw CannotBuild("cannot be read");
+    }
+    if (kind == ".obj") {
+        check_obj(text);
+    } else if (!is_binary_stl(text)) {
+        check_ascii_stl(text);
+    }
+}
+
 using Edge = std::pair<std::size_t, std::size_t>;
 
 Edge sorted(std::size_t a, std::size_t b) { return a < b ? Edge{a, b} : Edge{b, a}; }
@@ -85,11 +111,12 @@ TriangleMesh read_mesh(const std::filesystem::path& file, const ReadOptions& opt
     if (!std::filesystem::is_regular_file(file, error)) {
         throw CannotBuild("no such file");
     }
+    check_lines(file);
     Assimp::Importer importer;
     // Applies node transformations; keeps everything else unchanged, including triangles without area.
     const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_PreTransformVertices);
     if (scene == nullptr) {
-        throw CannotBuild(std::string("cannot be read: ") + importer.GetErrorString());
+        throw CannotBuild("cannot be read: " + files::printable(importer.GetErrorString()));
     }
     TriangleMesh out;
     Weld weld(out);

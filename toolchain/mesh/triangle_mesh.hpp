@@ -19,6 +19,13 @@ using Vec3d = Eigen::Vector3d;
 /// Why no map can be built of a mesh, in words for the user.
 struct CannotBuild : std::runtime_error {
     using std::runtime_error::runtime_error;
+    CannotBuild(std::size_t in_line, std::size_t in_column, const std::string& why)
+        : std::runtime_error(why), line(in_line), column(in_column)
+    {
+    }
+
+    std::size_t line = 0;    ///< of the file, from 1; 0: the file as a whole
+    std::size_t column = 0;  ///< from 1
 };
 
 /// World frame, metres, z up. Triangles have their vertices counter-clockwise, seen from outside.
@@ -39,10 +46,10 @@ struct ReadOptions {
     bool y_up = false;   ///< the file's y is up, its z points backwards (usual in OBJ files)
 };
 
-/// Reads an STL or OBJ file. Vertices at the same place are merged, so that triangles know their neighbours. Triangles
-/// without area are kept as obstacles.
-/// @throws CannotBuild when the file is missing, is not a mesh, has no triangle, or a coordinate is not finite or
-///         beyond 1000 m
+/// Reads an STL or OBJ file, as its name ends in .stl or .obj. Vertices at the same place are merged, so that triangles
+/// know their neighbours. Triangles without area are kept as obstacles.
+/// @throws CannotBuild when the file is missing, is not a mesh, has a line that is not understood (mesh_lines.hpp) or
+///         no triangle, or a coordinate is not finite or beyond 1000 m
 [[nodiscard]] TriangleMesh read_mesh(const std::filesystem::path& file, const ReadOptions& options);
 
 /// Sets of triangles connected by common vertices, in the order of each set's first triangle.

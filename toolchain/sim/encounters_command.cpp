@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "firmware/app/work_rate.hpp"
+#include "toolchain/sim/option_range.hpp"
 
 namespace jink::sim {
 
@@ -17,7 +18,7 @@ std::vector<CLI::Option*> add_board(CLI::App& command, Board& board)
     return {command
                 .add_option("--clock", board.clock,
                             "work of a step for a processor with this clock, plans going on over several steps [MHz]")
-                ->check(CLI::Range(app::WorkRate::kMinMegahertz, app::WorkRate::kMaxMegahertz)),
+                ->check(whole(app::WorkRate::kMinMegahertz, app::WorkRate::kMaxMegahertz)),
             command.add_flag("--reduced-sets", board.reduced_sets,
                              "reach sets of fewer nodes, those of images with little memory (STM32F405)")};
 }
@@ -28,16 +29,16 @@ CLI::App& add_encounters(CLI::App& cli, EncountersOptions& options, bool with_th
         "encounters", "many random encounters of one to eight intruders, flown block by block into a folder; "
                       "exit status 1 when a promise was broken that could have been kept, or a rule");
     constexpr std::uint64_t kMaxSeed = 1'000'000'000'000'000U;
-    CLI::Option* const from = command->add_option("--from", options.from, "the first seed, default 1")
-                                  ->check(CLI::Range(std::uint64_t{0}, kMaxSeed));
-    CLI::Option* const count = command->add_option("--count", options.count, "how many, default 1000")
-                                   ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}));
+    CLI::Option* const from =
+        command->add_option("--from", options.from, "the first seed, default 1")->check(whole(0, kMaxSeed));
+    CLI::Option* const count =
+        command->add_option("--count", options.count, "how many, default 1000")->check(whole(1, 100'000'000));
     CLI::Option* const seeds = command->add_option("--seed-file", options.seed_file, "or these seeds, one to a line")
                                    ->check(CLI::ExistingFile)
                                    ->excludes(from)
                                    ->excludes(count);
-    CLI::Option* const block = command->add_option("--block", options.block, "encounters to a block, default 100")
-                                   ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000}));
+    CLI::Option* const block =
+        command->add_option("--block", options.block, "encounters to a block, default 100")->check(whole(1, 1'000'000));
     CLI::Option* const planner =
         command->add_option("--planner", options.planner, "the product's, or with the settings of its source")
             ->check(CLI::IsMember({"product", "source"}));
@@ -60,7 +61,7 @@ CLI::App& add_encounters(CLI::App& cli, EncountersOptions& options, bool with_th
     }
     if (with_threads) {
         command->add_option("--threads", options.threads, "default: one to a core")
-            ->check(CLI::Range(1U, 1024U))
+            ->check(whole(1, 1024))
             ->excludes(summary);
     }
     command->add_flag("--quiet", options.quiet, "the summary is written, but not printed");

@@ -4,12 +4,14 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
+#include <sstream>
 
 #include <CLI/CLI.hpp>
 
 #include "firmware/app/work_rate.hpp"
+#include "firmware/linux/param_store.hpp"
+#include "toolchain/sim/command_end.hpp"
 #include "toolchain/sim/daemon.hpp"
 #include "toolchain/sim/encounter_campaign.hpp"
 #include "toolchain/sim/encounters_command.hpp"
@@ -17,8 +19,10 @@
 #include "toolchain/sim/in_process.hpp"
 #include "toolchain/sim/manned_command.hpp"
 #include "toolchain/sim/matrix_command.hpp"
+#include "toolchain/sim/option_range.hpp"
 #include "toolchain/sim/parallel.hpp"
 #include "toolchain/sim/phases_command.hpp"
+#include "toolchain/sim/program_file.hpp"
 #include "toolchain/sim/random_scenario.hpp"
 #include "toolchain/sim/recorded_command.hpp"
 #include "toolchain/sim/replay_command.hpp"
@@ -30,9 +34,6 @@ namespace {
 
 using namespace jink::sim;
 namespace fs = std::filesystem;
-
-/// Exit status for a wrong command line, a malformed file, and what else keeps a command from its work.
-constexpr int kRefused = 2;
 
 struct Options {
     std::vector<std::string> files;
@@ -52,18 +53,6 @@ struct Options {
     bool judge = false;
     bool within_phases = false;
 };
-
-/// jinkd beside this program, or at its place in a build folder.
-fs::path find_daemon()
-{
-    const fs::path here = fs::read_symlink("/proc/self/exe").parent_path();
-    for (const fs::path& candidate : {here / "jinkd", here / "../../firmware/linux/jinkd"}) {
-        if (fs::exists(candidate)) {
-            return fs::canonical(candidate);
-        }
-    }
-    throw std::runtime_error("jinkd is not where this program is; say where with --daemon");
-}
 
 std::vector<Scenario> load_all(const std::vector<std::string>& files, bool real_time, const Board& board)
 {
@@ -93,11 +82,10 @@ Record fly_recorded(const Scenario& scenario, const std::string& folder)
     }
     fs::create_directories(folder);
     const fs::path file = fs::path(folder) / (scenario.name + ".steps");
-    std::ofstream steps(file, std::ios::binary);
+    std::ostringstream steps;
     Record record = fly_in_process(scenario, &steps);
-    steps.close();
-    if (!steps) {
-        throw std::runtime_error(file.string() + " cannot be written");
+    if (const std::string wrong = jink::files::replace_file(file.string(), steps.view()); !wrong.empty()) {
+        throw std::runtime_error(file.string() + ": " + wrong);
     }
     return record;
 }
@@ -150,10 +138,7 @@ int finish(const Options& options, const std::vector<ReportedFlight>& flights)
     }
     if (!options.out.empty()) {
         const fs::path file = fs::path(options.out) / "run.json";
-        if (!write_run(file, flights)) {
-            std::cerr << "jink-sim: " << file.string() << " cannot be written\n";
-            return EXIT_FAILURE;
-        }
+        write_run(file, flights);
         std::cout << "Written: " << file.string() << "\n";
     }
     return bad == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
@@ -179,7 +164,7 @@ Computer computer_of(const Options& options)
     if (!options.image.empty()) {
         return {options.image, options.machine};
     }
-    return {options.daemon.empty() ? find_daemon() : fs::path(options.daemon), ""};
+    return {options.daemon.empty() ? find_daemon("--daemon") : fs::path(options.daemon), ""};
 }
 
 int fly(const Options& options)
@@ -270,9 +255,7 @@ int crowd(const Options& options)
     return finish(options, flights);
 }
 
-}  // namespace
-
-int main(int argc, char** argv)
+int run(int argc, char** argv)
 {
     Options options;
     CLI::App cli{"jink-sim: flies encounters against the co-processor. The exit status is not 0 when one does not end "
@@ -303,10 +286,10 @@ int main(int argc, char** argv)
     }
     for (CLI::App* command : {fly_command, demo_command}) {
         CLI::Option* const daemon =
-            command->add_option("--daemon", options.daemon, "the program jinkd")->check(CLI::ExistingFile);
+            command->add_option("--daemon", options.daemon, "the program jinkd")->transform({find_program, "FILE"});
         CLI::Option* const image =
             command->add_option("--image", options.image, "a bare-metal image, flown under qemu-system-arm")
-                ->check(CLI::ExistingFile)
+                ->check({check_image, "FILE"})
                 ->excludes(daemon);
         CLI::Option* const machine =
             command->add_option("--machine", options.machine, "qemu's board for the image: mps2-an500, netduinoplus2");
@@ -324,11 +307,11 @@ int main(int argc, char** argv)
                 ->excludes(daemon)
                 ->excludes(image);
         }
-        command->add_option("--at-once", options.at_once, "flights in real time at once")->check(CLI::Range(1, 64));
+        command->add_option("--at-once", options.at_once, "flights in real time at once")->check(whole(1, 64));
     }
     for (CLI::App* command : {random_command, demo_command, crowd_command}) {
-        command->add_option("--count", options.count, "random encounters")->check(CLI::Range(0, 1000000));
-        command->add_option("--seed", options.seed, "of the first one");
+        command->add_option("--count", options.count, "random encounters")->check(whole(0, 1000000));
+        command->add_option("--seed", options.seed, "of the first one")->check(any_seed());
     }
     for (CLI::App* command : {fly_command, demo_command, random_command, crowd_command}) {
         command->add_option("--out", options.out, "folder for run.json and the daemon's logs");
@@ -340,7 +323,7 @@ int main(int argc, char** argv)
                  "of a tick, work units of a step, and of those of its slice");
     rates_command->add_option("clocks", clocks)
         ->required()
-        ->check(CLI::Range(jink::app::WorkRate::kMinMegahertz, jink::app::WorkRate::kMaxMegahertz));
+        ->check(whole(jink::app::WorkRate::kMinMegahertz, jink::app::WorkRate::kMaxMegahertz));
     EncountersOptions encounters;
     const CLI::App& encounters_command = add_encounters(cli, encounters, true);
     SwarmOptions swarm;
@@ -356,7 +339,7 @@ int main(int argc, char** argv)
     try {
         cli.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
-        return cli.exit(e) == 0 ? EXIT_SUCCESS : kRefused;
+        return end_of_parse(cli, "jink-sim", e);
     }
     try {
         make_folder(options);
@@ -398,3 +381,7 @@ int main(int argc, char** argv)
         return kRefused;
     }
 }
+
+}  // namespace
+
+int main(int argc, char** argv) { return with_output("jink-sim", run(argc, argv)); }

@@ -10,6 +10,7 @@
 
 #include "toolchain/sim/encounter_campaign.hpp"
 #include "toolchain/sim/encounters_command.hpp"
+#include "toolchain/sim/option_range.hpp"
 #include "toolchain/sim/parallel.hpp"
 
 namespace jink::sim {
@@ -44,12 +45,11 @@ CLI::App& add_manned(CLI::App& cli, MannedOptions& options)
     command->add_option("--sensor", options.sensor, "a transponder, or a sensor with a range of 2 km")
         ->check(CLI::IsMember({"adsb", "range"}));
     constexpr std::uint64_t kMaxSeed = 1'000'000'000'000'000U;
-    command->add_option("--from", options.from, "the first seed")->check(CLI::Range(std::uint64_t{0}, kMaxSeed));
-    command->add_option("--count", options.count, "encounters of each model")
-        ->check(CLI::Range(std::size_t{1}, std::size_t{10'000'000}));
+    command->add_option("--from", options.from, "the first seed")->check(whole(0, kMaxSeed));
+    command->add_option("--count", options.count, "encounters of each model")->check(whole(1, 10'000'000));
     command->add_option("--set", options.parameters, "NAME=VALUE: a parameter of the co-processor, any number of them");
     static_cast<void>(add_board(*command, options.board));
-    command->add_option("--threads", options.threads, "default: one to a core")->check(CLI::Range(1U, 1024U));
+    command->add_option("--threads", options.threads, "default: one to a core")->check(whole(1, 1024));
     command->add_flag("--list", options.list, "the seeds of all near mid-air collisions too");
     return *command;
 }

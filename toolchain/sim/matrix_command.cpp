@@ -10,6 +10,7 @@
 
 #include "toolchain/sim/in_process.hpp"
 #include "toolchain/sim/matrix.hpp"
+#include "toolchain/sim/option_range.hpp"
 #include "toolchain/sim/parallel.hpp"
 
 namespace jink::sim {
@@ -176,13 +177,13 @@ CLI::App& add_matrix(CLI::App& cli, MatrixOptions& options)
     CLI::App* command =
         cli.add_subcommand("matrix", "encounters in every behaviour of every simulated autopilot; exit status 1 when a "
                                      "hit was avoidable, a rule was broken or the autopilot said a CRITICAL text");
-    command->add_option("--from", options.from, "the first seed, default 1");
-    command->add_option("--count", options.count, "seeds to a cell, default 20")->check(CLI::Range(1, 100'000));
+    command->add_option("--from", options.from, "the first seed, default 1")->check(any_seed());
+    command->add_option("--count", options.count, "seeds to a cell, default 20")->check(whole(1, 100'000));
     command->add_option("--behaviour", options.behaviour, "this one alone")
         ->check(CLI::IsMember(names_of(kBehaviours)));
     command->add_option("--encounter", options.meeting, "this one alone")->check(CLI::IsMember(names_of(kMeetings)));
     command->add_option("--autopilot", options.flyer, "this one alone")->check(CLI::IsMember(names_of(kFlyers)));
-    command->add_option("--threads", options.threads, "default 2")->check(CLI::Range(1U, 1024U));
+    command->add_option("--threads", options.threads, "default 2")->check(whole(1, 1024));
     command->add_flag("--brief", options.brief, "a line for all encounters of a behaviour");
     command->add_flag("--rough", options.rough,
                       "1 Hz ADS-B in its steps, an estimator with bias and latency, gusts of a wind of 15 kt");

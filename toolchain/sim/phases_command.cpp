@@ -9,6 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "toolchain/sim/option_range.hpp"
 #include "toolchain/sim/phases.hpp"
 #include "toolchain/sim/scenario_file.hpp"
 
@@ -21,11 +22,11 @@ CLI::App& add_phases(CLI::App& cli, PhasesOptions& options)
     command->add_option("files", options.files, "scenario files")->required()->check(CLI::ExistingFile);
     command->add_flag("--sensors,!--sensors-fixed", options.spread.sensors, "vary their phases, or not");
     command->add_option("--held-up", options.spread.held_up_share, "share of ticks held up by 20 ms and more")
-        ->check(CLI::Range(0.0, 1.0));
+        ->check(finite(0.0, 1.0));
     command->add_option("--held-up-most", options.spread.held_up_most, "and by at most this [us]")
-        ->check(CLI::Range(20'000, 1'000'000));
-    command->add_option("--count", options.count, "phases")->check(CLI::Range(0, 1000000));
-    command->add_option("--seed", options.seed, "of the first one");
+        ->check(whole(20'000, 1'000'000));
+    command->add_option("--count", options.count, "phases")->check(whole(0, 1000000));
+    command->add_option("--seed", options.seed, "of the first one")->check(any_seed());
     return *command;
 }
 

@@ -3,11 +3,15 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <initializer_list>
 #include <numbers>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
+
+#include "firmware/linux/complaint.hpp"
 
 namespace jink::sim {
 namespace {
@@ -67,15 +71,17 @@ std::string lower(std::string word)
     return word;
 }
 
-std::optional<double> number_of(const std::string& word)
+/// A decimal number that is the whole word, as large as a time since 1970 in milliseconds at most.
+std::optional<double> number_of(std::string_view word)
 {
-    std::size_t read = 0;
-    try {
-        const double value = std::stod(word, &read);
-        return read == word.size() && std::isfinite(value) ? std::optional(value) : std::nullopt;
-    } catch (const std::exception&) {
-        return std::nullopt;
+    constexpr double kLargest = 1e13;
+    if (word.size() > 1 && word[0] == '+' && word[1] != '-') {
+        word.remove_prefix(1);
     }
+    double value = 0.0;
+    const auto [end, bad] = std::from_chars(word.data(), word.data() + word.size(), value);
+    const bool good = bad == std::errc{} && end == word.data() + word.size() && std::abs(value) <= kLargest;
+    return good ? std::optional(value) : std::nullopt;
 }
 
 /// Seconds, minutes and seconds, or hours as well.
@@ -179,7 +185,8 @@ bool RecordedColumns::take_units(const std::vector<std::string>& words)
                 return;
             }
         }
-        throw std::runtime_error("unit " + unit + " of column " + names_[column.index] + " is not known");
+        throw std::runtime_error("unit " + files::in_quotes(unit) + " of column " +
+                                 files::in_quotes(names_[column.index]) + " is not known");
     };
     if (!clock_) {
         take(time_);
@@ -196,7 +203,8 @@ double RecordedColumns::value(const Column& column, const std::vector<std::strin
 {
     const std::optional<double> number = number_of(words[column.index]);
     if (!number) {
-        throw std::runtime_error("column " + names_[column.index] + ": " + words[column.index] + " is not a number");
+        throw std::runtime_error("column " + names_[column.index] + ": " + files::in_quotes(words[column.index]) +
+                                 " is not a number from -1e13 to 1e13");
     }
     return *number * column.factor;
 }
@@ -211,7 +219,7 @@ RecordedRow RecordedColumns::row(const std::vector<std::string>& words) const
     if (clock_) {
         const std::optional<double> time = clock_of(words[time_.index]);
         if (!time) {
-            throw std::runtime_error("column clock: " + words[time_.index] + " is not a time");
+            throw std::runtime_error("column clock: " + files::in_quotes(words[time_.index]) + " is not a time");
         }
         row.time = *time;
     } else {

@@ -64,6 +64,9 @@ private:
         if (words.empty()) {
             return;
         }
+        if (line.find('\0') != std::string::npos) {
+            throw std::runtime_error("a zero byte");
+        }
         if (!columns_) {
             if (line.find('=') == std::string::npos) {
                 columns_.emplace(words);

@@ -3,12 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iomanip>
 #include <ostream>
+#include <stdexcept>
 
 #include <nlohmann/json.hpp>
 
+#include "firmware/linux/param_store.hpp"
 #include "toolchain/sim/decision_at.hpp"
 #include "toolchain/sim/in_process.hpp"
 
@@ -338,11 +339,11 @@ std::string run_text(const std::vector<ReportedFlight>& flights, bool machine_in
     return run.dump();
 }
 
-bool write_run(const std::filesystem::path& file, const std::vector<ReportedFlight>& flights)
+void write_run(const std::filesystem::path& file, const std::vector<ReportedFlight>& flights)
 {
-    std::ofstream out(file);
-    out << run_text(flights, false) << '\n';
-    return static_cast<bool>(out.flush());
+    if (const std::string wrong = files::replace_file(file.string(), run_text(flights, false) + "\n"); !wrong.empty()) {
+        throw std::runtime_error(file.string() + ": " + wrong);
+    }
 }
 
 }  // namespace jink::sim

@@ -40,9 +40,9 @@ struct ReportedFlight {
 /// Table for people: name, outcome, least separation with time and threat, longest step with a plan.
 void print_table(std::ostream& out, const std::vector<ReportedFlight>& flights);
 
-/// Writes run.json, the input of `jink report`; tests/scenario/README.md describes its layout. False when the file
-/// cannot be written.
-[[nodiscard]] bool write_run(const std::filesystem::path& file, const std::vector<ReportedFlight>& flights);
+/// Writes run.json, the input of `jink report`; tests/scenario/README.md describes its layout. An earlier file is
+/// replaced as a whole. @throws std::runtime_error when the file cannot be written
+void write_run(const std::filesystem::path& file, const std::vector<ReportedFlight>& flights);
 
 /// The same as text, without times of steps when `machine_independent`: equal for equal seeds, byte by byte.
 [[nodiscard]] std::string run_text(const std::vector<ReportedFlight>& flights, bool machine_independent);

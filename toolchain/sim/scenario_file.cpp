@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "firmware/app/parameters.hpp"
+#include "firmware/linux/param_file.hpp"
 #include "toolchain/sim/scenario_parts.hpp"
 
 namespace jink::sim {
@@ -169,14 +170,29 @@ void read_parameters(YamlMap& root, Scenario& s, Complaints& complaints)
     if (!node) {
         return;
     }
+    const std::size_t before = complaints.size();
     YamlMap map(*node, "parameters", root.file(), complaints);
-    for (const app::ParamInfo& info : app::param_table()) {
+    app::Parameters parameters;
+    files::ParamValues values = parameters.values();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const app::ParamInfo& info = app::param_table()[i];
         const std::string name(info.name);
-        if (map.has(name)) {
-            number(map, name, s.parameters[name], {-1e9F, 1e9F});
+        if (!map.has(name)) {
+            continue;
+        }
+        const Range range{info.low, info.high};
+        if (const auto value = info.integer ? map.whole(name, range) : map.number(name, range)) {
+            values[i] = *value;
+            s.parameters[name] = map.node(name)->as<double>();
         }
     }
     map.finish();
+    Complaints unfit;
+    if (complaints.size() == before && !files::apply_together(values, root.file(), parameters, unfit)) {
+        for (const files::Complaint& complaint : unfit) {
+            root.complain("parameters", complaint.text);
+        }
+    }
 }
 
 void read_seed(YamlMap& map, Scenario& s)

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
 #include <functional>
 #include <iomanip>
 #include <iostream>
@@ -12,9 +11,12 @@
 
 #include <CLI/CLI.hpp>
 
+#include "firmware/linux/param_store.hpp"
 #include "toolchain/sim/encounter_campaign.hpp"
 #include "toolchain/sim/encounters_command.hpp"
+#include "toolchain/sim/option_range.hpp"
 #include "toolchain/sim/parallel.hpp"
+#include "toolchain/sim/program_file.hpp"
 
 namespace jink::sim {
 namespace {
@@ -60,13 +62,7 @@ std::filesystem::path program_of(const SwarmOptions& options)
     if (!options.program.empty()) {
         return options.program;
     }
-    const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-    for (const auto& candidate : {here / "jinkd", here / "../../firmware/linux/jinkd"}) {
-        if (std::filesystem::exists(candidate)) {
-            return std::filesystem::canonical(candidate);
-        }
-    }
-    throw std::runtime_error("jinkd is not where this program is; say where with --program");
+    return find_daemon("--program");
 }
 
 std::vector<SwarmResult> fly_daemons_one_by_one(const SwarmSetup& setup, const SwarmOptions& options)
@@ -89,35 +85,35 @@ CLI::App& add_swarm(CLI::App& cli, SwarmOptions& options)
     CLI::App* command = cli.add_subcommand(
         "swarm", "vehicles on a circle change places, each with a co-processor of its own; exit status 1 when bodies "
                  "touched, a goal was missed or a rule of the protocol was broken");
-    command->add_option("--vehicles", s.vehicles, "how many, default 20")->check(CLI::Range(2U, 64U));
-    command->add_option("--circle", s.circle, "its radius, default 10 [m]")->check(CLI::Range(1.0, 1000.0));
-    command->add_option("--tilt", s.tilt, "of its plane, 90: vertical, default 0 [deg]")->check(CLI::Range(0.0, 90.0));
+    command->add_option("--vehicles", s.vehicles, "how many, default 20")->check(whole(2, 64));
+    command->add_option("--circle", s.circle, "its radius, default 10 [m]")->check(finite(1.0, 1000.0));
+    command->add_option("--tilt", s.tilt, "of its plane, 90: vertical, default 0 [deg]")->check(finite(0.0, 90.0));
     command->add_option("--sector", s.sector, "of the circle over which they start, default 360 [deg]")
-        ->check(CLI::Range(1.0, 360.0));
+        ->check(finite(1.0, 360.0));
     command->add_option("--slow", s.slow, "share of the cruise speed of every second vehicle, default 1")
-        ->check(CLI::Range(0.1, 1.0));
+        ->check(finite(0.1, 1.0));
     command->add_option("--others", options.others, "NAME=VALUE of every second co-processor, any number of them");
-    command->add_option("--cruise", s.cruise, "cruise speed, default 1 [m/s]")->check(CLI::Range(0.5, 20.0));
-    command->add_option("--spread", s.spread, "of the starting places, default 0.1 [m]")->check(CLI::Range(0.0, 1.0));
+    command->add_option("--cruise", s.cruise, "cruise speed, default 1 [m/s]")->check(finite(0.5, 20.0));
+    command->add_option("--spread", s.spread, "of the starting places, default 0.1 [m]")->check(finite(0.0, 1.0));
     command->add_flag("--back", s.back, "and back again");
-    command->add_option("--obstacles", s.obstacles, "that move, default 0")->check(CLI::Range(0U, 62U));
+    command->add_option("--obstacles", s.obstacles, "that move, default 0")->check(whole(0, 62));
     command->add_option("--body", s.body, "radius of vehicles and obstacles, default 0.25 [m]")
-        ->check(CLI::Range(0.05, 5.0));
-    command->add_option("--level", s.level, "separation, level, default 0.7 [m]")->check(CLI::Range(0.2, 50.0));
-    command->add_option("--vertical", s.vertical, "or in height, default 0.5 [m]")->check(CLI::Range(0.2, 50.0));
-    command->add_option("--rate", s.rate, "of broadcasts, default 10 [Hz]")->check(CLI::Range(1.0, 200.0));
-    command->add_option("--loss", s.loss, "share of broadcasts lost, default 0")->check(CLI::Range(0.0, 1.0));
-    command->add_option("--delay", s.delay, "of broadcasts, default 0 [s]")->check(CLI::Range(0.0, 1.9));
-    command->add_option("--duration", s.duration, "at most, default 180 [s]")->check(CLI::Range(1.0, 3600.0));
+        ->check(finite(0.05, 5.0));
+    command->add_option("--level", s.level, "separation, level, default 0.7 [m]")->check(finite(0.2, 50.0));
+    command->add_option("--vertical", s.vertical, "or in height, default 0.5 [m]")->check(finite(0.2, 50.0));
+    command->add_option("--rate", s.rate, "of broadcasts, default 10 [Hz]")->check(finite(1.0, 200.0));
+    command->add_option("--loss", s.loss, "share of broadcasts lost, default 0")->check(finite(0.0, 1.0));
+    command->add_option("--delay", s.delay, "of broadcasts, default 0 [s]")->check(finite(0.0, 1.9));
+    command->add_option("--duration", s.duration, "at most, default 180 [s]")->check(finite(1.0, 3600.0));
     static_cast<void>(add_board(*command, s.board));
     command->add_option("--stack", options.stack, "of the autopilots")->check(CLI::IsMember({"ardupilot", "px4"}));
     command->add_option("--parameters", options.parameters, "NAME=VALUE of the co-processors, any number of them");
-    command->add_option("--seed", options.seed, "the first, default 1");
-    command->add_option("--count", options.count, "seeds, default 1")->check(CLI::Range(1U, 1'000'000U));
-    command->add_option("--threads", options.threads, "default: one to a core")->check(CLI::Range(1U, 1024U));
+    command->add_option("--seed", options.seed, "the first, default 1")->check(any_seed());
+    command->add_option("--count", options.count, "seeds, default 1")->check(whole(1, 1'000'000));
+    command->add_option("--threads", options.threads, "default: one to a core")->check(whole(1, 1024));
     command->add_option("--out", options.out, "folder for results.txt, and SEED.csv of flights that went wrong");
     command->add_flag("--daemon", options.daemon, "in real time, one jinkd to a vehicle, on pseudo-terminals");
-    command->add_option("--program", options.program, "the program jinkd")->check(CLI::ExistingFile);
+    command->add_option("--program", options.program, "the program jinkd")->transform({find_program, "FILE"});
     return *command;
 }
 
@@ -182,11 +178,8 @@ int run_swarm(const SwarmOptions& options)
     std::cout << text.str();
     if (!options.out.empty()) {
         const std::filesystem::path file = std::filesystem::path(options.out) / "results.txt";
-        std::ofstream out(file);
-        out << text.str();
-        out.close();
-        if (!out) {
-            throw std::runtime_error(file.string() + " cannot be written");
+        if (const std::string wrong = files::replace_file(file.string(), text.view()); !wrong.empty()) {
+            throw std::runtime_error(file.string() + ": " + wrong);
         }
     }
     const bool good = std::all_of(results.begin(), results.end(), [](const SwarmResult& r) { return r.good(); });

@@ -70,13 +70,22 @@ void add_reason(const app::StepReport& report, Line& line)
 FlightLog::FlightLog(Output& output, const Limits& limits, const files::ParamValues& parameters)
     : output_(output),
       recorder_(limits.record, kPartHead, limits.record / kHalSizes.back() * kPartHead + 4 * kMaxMessage),
-      messages_(recorder_.end().memory()), parameters_(parameters)
+      messages_(recorder_.end().memory()), parameters_(parameters), accepted_(parameters)
 {
 }
 
 void FlightLog::flush() noexcept
 {
-    output_.add(messages_.first(size_), count_, records_);
+    const bool is_accepted = output_.add(messages_.first(size_), count_, records_);
+    if (has_changes_) [[unlikely]] {
+        if (is_accepted) {
+            accepted_ = parameters_;
+        } else {  // logged again with the next step
+            parameters_ = accepted_;
+            has_generation_ = false;
+        }
+        has_changes_ = false;
+    }
     size_ = 0;
     count_ = 0;
     records_ = {};
@@ -280,12 +289,13 @@ void FlightLog::put_changed_parameters(const app::Parameters& parameters) noexce
         if (value == parameters_[i]) {
             continue;
         }
-        parameters_[i] = value;
         const app::ParamInfo& info = app::param_table()[i];
         const std::string_view type = info.integer ? "int32_t " : "float ";
         ulog::Composer change = message(ulog::Type::parameter);
         change.put(static_cast<std::uint8_t>(type.size() + info.name.size())).put_text(type).put_text(info.name);
         keep(info.integer ? change.put(static_cast<std::int32_t>(value)) : change.put(value));
+        parameters_[i] = value;
+        has_changes_ = true;
     }
 }
 

@@ -100,8 +100,10 @@ private:
     std::span<std::byte> messages_;
     std::size_t size_ = 0;  ///< of them [bytes]
     std::uint32_t count_ = 0;
-    Records records_;  ///< at the head of them
-    files::ParamValues parameters_;
+    Records records_;                ///< at the head of them
+    files::ParamValues parameters_;  ///< as logged
+    files::ParamValues accepted_;    ///< those of them that the output has for certain
+    bool has_changes_ = false;       ///< of parameters among `messages_`
     std::uint32_t generation_ = 0;
     bool has_generation_ = false;
     std::uint32_t sequence_ = 0;

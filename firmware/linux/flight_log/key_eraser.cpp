@@ -11,16 +11,15 @@ namespace {
 constexpr std::size_t kLength = 1;     ///< of the payload
 constexpr std::size_t kFlags = 2;      ///< incompatible ones: 1, signed, is the only one there is
 constexpr std::size_t kMessageId = 7;  ///< three bytes
-constexpr std::size_t kMaxPayload = 42;
-constexpr std::size_t kKey = 10;  ///< in the payload; a shorter one has none
+constexpr std::size_t kKey = 10;       ///< in the payload; a shorter one has none
 
 /// @param header  ten bytes
 bool is_setup_signing(const std::byte* header)
 {
     return header[kMessageId] == std::byte{0} &&  // first: few other frames get further
            header[0] == link::mavlink::kStartV2 && static_cast<std::size_t>(header[kLength]) > kKey &&
-           static_cast<std::size_t>(header[kLength]) <= kMaxPayload && static_cast<unsigned>(header[kFlags]) <= 1U &&
-           header[kMessageId + 1] == std::byte{1} && header[kMessageId + 2] == std::byte{0};
+           static_cast<unsigned>(header[kFlags]) <= 1U && header[kMessageId + 1] == std::byte{1} &&
+           header[kMessageId + 2] == std::byte{0};
 }
 
 }  // namespace

@@ -10,8 +10,8 @@
 namespace jink::flightlog {
 
 /// Finds SETUP_SIGNING (message 256) in received bytes and overwrites its payload, which holds a signing key, with
-/// zeros. Every byte that could begin such a frame counts, whatever the receiver makes of it; the frame may be split
-/// over reads. O(bytes).
+/// zeros. Payloads of a later revision, which are longer, count too, as the receiver takes them. Every byte that could
+/// begin such a frame counts, whatever the receiver makes of it; the frame may be split over reads. O(bytes).
 class KeyEraser {
 public:
     /// @return whether anything was overwritten
@@ -20,9 +20,9 @@ public:
     /// frame may be among the missing ones.
     void forget() noexcept;
 
-    /// Longest part of a frame that can follow missing bytes is 53 bytes: 9 of its header, a payload of 42 and the
-    /// checksum. The rest covers a DroneCAN transfer whose first frame is missing too, so that bytes of its own head
-    /// pass for tunnelled ones.
+    /// A key ends at most 51 bytes behind missing bytes: 9 of its header, and 42 of the payload, however long that is.
+    /// The rest covers a DroneCAN transfer whose first frame is missing too, so that bytes of its own head pass for
+    /// tunnelled ones.
     static constexpr std::size_t kUnknown = 64;
 
 private:

@@ -13,30 +13,6 @@ namespace {
 
 constexpr std::size_t kStateBytes = 1;  ///< of the transfer, behind the data of each frame
 
-/// The tunnelled bytes of a frame of a DroneCAN tunnel (uavcan.tunnel.Targetted and Broadcast); empty for others.
-/// @param data  of the frame
-/// @param head  bytes of the transfer before those that are tunnelled: set by the first frame, less by those skipped
-std::span<std::byte> tunnelled(const hal::CanFrame& frame, std::span<std::byte> data, std::size_t& head)
-{
-    constexpr std::uint32_t kService = 0x80;
-    constexpr std::uint32_t kTargetted = 3001;
-    constexpr std::uint32_t kBroadcast = 2010;
-    constexpr unsigned kStart = 0x80;
-    constexpr unsigned kEnd = 0x40;
-    const std::uint32_t type = frame.id >> 8U & 0xFFFFU;
-    if (!frame.extended || (frame.id & kService) != 0 || (type != kTargetted && type != kBroadcast) ||
-        data.size() < kStateBytes) {
-        return {};
-    }
-    const auto state = static_cast<unsigned>(data.back());
-    if ((state & kStart) != 0) {  // a checksum where there are several frames; then protocol, target, port, baud rate
-        head = ((state & kEnd) != 0 ? 0U : 2U) + (type == kTargetted ? 6U : 2U);
-    }
-    const std::size_t skipped = std::min(head, data.size() - kStateBytes);
-    head -= skipped;
-    return data.subspan(skipped, data.size() - kStateBytes - skipped);
-}
-
 void overwrite(std::span<std::byte> bytes) { std::fill(bytes.begin(), bytes.end(), std::byte{0}); }
 
 }  // namespace
@@ -119,10 +95,14 @@ std::size_t KeyFilter::pass(std::span<std::byte> messages)
 void KeyFilter::forget()
 {
     line_.forget();
-    for (Tunnel& tunnel : tunnels_) {
-        tunnel.eraser.forget();
-        tunnel.head = 0;
-    }
+    forget_streams();
+}
+
+void KeyFilter::forget_streams()
+{
+    streams_.clear();
+    transfers_.fill({});
+    is_incomplete_ = true;
 }
 
 /// @return false: the record is damaged
@@ -151,10 +131,57 @@ void KeyFilter::erase_in_read(std::span<std::byte> bytes, KeyEraser& eraser, std
     }
 }
 
+KeyEraser& KeyFilter::eraser_of(std::uint32_t sender, std::uint32_t place)
+{
+    const auto stream_of = [&](std::uint32_t where) { return where << 8U | sender; };
+    if (const auto found = streams_.find(stream_of(place)); found != streams_.end()) {
+        return found->second;
+    }
+    if (streams_.size() >= kStreams) {
+        forget_streams();
+    }
+    KeyEraser eraser;
+    if (is_incomplete_) {
+        eraser.forget();
+    } else if (const auto before = streams_.find(stream_of(kUnknownPlace)); before != streams_.end()) {
+        eraser = before->second;  // the log began within a transfer, which may be one of this stream
+    }
+    return streams_.emplace(stream_of(place), eraser).first->second;
+}
+
+/// Frames of a DroneCAN tunnel: uavcan.tunnel.Targetted and Broadcast. A receiver joins the frames of a node and type
+/// to transfers, and takes the bytes of those with its own target and serial port.
 void KeyFilter::erase_in_frame(const hal::CanFrame& frame, std::span<std::byte> data, std::byte& entry)
 {
-    Tunnel& tunnel = tunnels_[frame.id % kNodes];
-    erase_in_read(tunnelled(frame, data, tunnel.head), tunnel.eraser, entry);
+    constexpr std::uint32_t kService = 0x80;
+    constexpr std::uint32_t kTargetted = 3001;
+    constexpr std::uint32_t kBroadcast = 2010;
+    constexpr unsigned kStart = 0x80;
+    constexpr unsigned kEnd = 0x40;
+    const std::uint32_t type = frame.id >> 8U & 0xFFFFU;
+    const bool is_targetted = type == kTargetted;
+    if (!frame.extended || (frame.id & kService) != 0 || (!is_targetted && type != kBroadcast) ||
+        data.size() < kStateBytes) {
+        return;
+    }
+    const std::uint32_t sender = frame.id % kNodes * 2 + (is_targetted ? 1U : 0U);
+    Transfer& transfer = transfers_[sender];
+    const auto state = static_cast<unsigned>(data.back());
+    const std::span<std::byte> bytes = data.first(data.size() - kStateBytes);
+    if ((state & kStart) != 0) {  // a checksum where there are several frames; then protocol, place, baud rate
+        const std::size_t at = (state & kEnd) != 0 ? 1U : 3U;
+        const std::size_t size = is_targetted ? 2U : 1U;
+        if (bytes.size() < at + size) {
+            forget_streams();
+        } else {
+            transfer.place = static_cast<std::uint32_t>(bytes[at]) << 8U |  // options follow in the last four bits
+                             (is_targetted ? static_cast<std::uint32_t>(bytes[at + 1]) & 0xF0U : 0U);
+            transfer.head = at + (is_targetted ? 5U : 1U);
+        }
+    }
+    const std::size_t skipped = std::min(transfer.head, bytes.size());
+    transfer.head -= skipped;
+    erase_in_read(bytes.subspan(skipped), eraser_of(sender, transfer.place), entry);
 }
 
 /// @return false: the record is damaged

@@ -15,7 +15,6 @@
 namespace jink::flightlog {
 namespace {
 
-constexpr std::string_view kPrefix = "jink_";
 constexpr std::string_view kSuffix = ".ulg";
 
 std::string name_of_run(std::time_t time)
@@ -34,10 +33,22 @@ std::string numbered(const std::string& run, std::uint32_t number)
     return run + "_" + digits + std::string(kSuffix);
 }
 
+/// As numbered() makes them: a log that was renamed to be kept is none.
 bool is_log(const std::string& name)
 {
-    constexpr std::size_t kShortest = 24;  // jink_YYYYmmdd_HHMMSS_NNN
-    return name.starts_with(kPrefix) && name.ends_with(kSuffix) && name.size() >= kShortest + kSuffix.size();
+    constexpr std::string_view kForm = "jink_dddddddd_dddddd_ddd";  // d: a digit, as many more as there are at the end
+    if (name.size() < kForm.size() + kSuffix.size() || !name.ends_with(kSuffix)) {
+        return false;
+    }
+    const std::string_view stem = std::string_view(name).substr(0, name.size() - kSuffix.size());
+    for (std::size_t i = 0; i < stem.size(); ++i) {
+        const char form = i < kForm.size() ? kForm[i] : 'd';
+        const bool digit = stem[i] >= '0' && stem[i] <= '9';
+        if (form == 'd' ? !digit : stem[i] != form) {
+            return false;
+        }
+    }
+    return true;
 }
 
 }  // namespace
@@ -94,17 +105,23 @@ std::size_t whole_messages(std::span<const std::byte> bytes, std::uint64_t limit
 }
 
 LogFiles::LogFiles(FileOptions options, Definitions definitions, std::unique_ptr<Disk> disk)
-    : options_(std::move(options)), definitions_(std::move(definitions)), disk_(std::move(disk))
+    : options_(std::move(options)), definitions_(std::move(definitions)), disk_(std::move(disk)),
+      run_time_(std::time(nullptr))
 {
     waiting_.reserve(3 * kPiece);
-    // Two runs within a second, or a machine whose clock starts at the same time after each boot.
+    choose_run();
+}
+
+/// The first name from run_time_ on that no file has: two runs may begin within a second, and the clock of a machine
+/// may start at the same time after each boot.
+void LogFiles::choose_run()
+{
     const std::vector<std::string> there = disk_->names_in(options_.folder);
-    std::time_t time = std::time(nullptr);
     const auto is_taken = [&](const std::string& run) {
         return std::any_of(there.begin(), there.end(), [&](const std::string& name) { return name.starts_with(run); });
     };
-    for (run_ = name_of_run(time); is_taken(run_);) {
-        run_ = name_of_run(++time);
+    for (run_ = name_of_run(run_time_); is_taken(run_);) {
+        run_ = name_of_run(++run_time_);
     }
 }
 
@@ -130,10 +147,27 @@ void LogFiles::fail(int error, std::int64_t now)
     retry_at_ = now + kRetry;
 }
 
+/// Under the next name that no other program has taken. @return errno
+int LogFiles::create_file()
+{
+    constexpr int kMaxNames = 100;
+    int error = EEXIST;
+    for (int i = 0; i < kMaxNames && error == EEXIST; ++i) {
+        path_ = options_.folder + "/" + numbered(run_, next_);
+        error = disk_->create(path_);
+        if (error == EEXIST && begun_ == 0) {  // another run's
+            ++run_time_;
+            choose_run();
+        } else if (error == EEXIST) {
+            ++next_;
+        }
+    }
+    return error;
+}
+
 bool LogFiles::begin_file(std::int64_t now)
 {
-    path_ = options_.folder + "/" + numbered(run_, next_);
-    int error = disk_->create(path_);
+    int error = create_file();
     if (error != 0) {
         fail(error, now);
         return false;
@@ -149,10 +183,25 @@ bool LogFiles::begin_file(std::int64_t now)
     }
     is_open_ = true;
     is_dirty_ = true;
+    is_stored_ = false;
     size_ = head.size();
     ++next_;
     ++begun_;
-    prune();  // only now: a disk on which nothing can be written keeps its old logs
+    return true;
+}
+
+bool LogFiles::sync(std::int64_t now)
+{
+    is_dirty_ = false;
+    if (const int error = disk_->sync(); error != 0) {
+        fail(error, now);
+        return false;
+    }
+    if (!is_stored_) {  // writes succeed in memory: a medium that stores nothing keeps its old logs
+        is_stored_ = true;
+        reported_ = false;
+        prune();
+    }
     return true;
 }
 
@@ -195,8 +244,7 @@ void LogFiles::write_messages(std::int64_t now)
                 return;
             }
             if (is_open_) {  // full
-                if (const int error = disk_->sync(); error != 0) {
-                    fail(error, now);
+                if (!sync(now)) {
                     return;
                 }
                 disk_->close();
@@ -219,7 +267,6 @@ void LogFiles::write_messages(std::int64_t now)
             fail(error, now);
             return;
         }
-        reported_ = false;
         is_dirty_ = true;
     }
 }
@@ -231,10 +278,7 @@ void LogFiles::work(std::int64_t now, bool last)
     }
     if (is_open_ && is_dirty_ && (last || now - synced_at_ >= kSyncPeriod)) {
         synced_at_ = now;
-        is_dirty_ = false;
-        if (const int error = disk_->sync(); error != 0) {
-            fail(error, now);
-        }
+        static_cast<void>(sync(now));
     }
 }
 

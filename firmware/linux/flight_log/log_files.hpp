@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <ctime>
 #include <map>
 #include <memory>
 #include <span>
@@ -38,7 +39,8 @@ struct Definitions {
 
 /// The files of one run: jink_YYYYmmdd_HHMMSS_NNN.ulg, where NNN counts within the run. Takes messages in any pieces
 /// and writes whole messages, without signing keys; a record that is not whole at the end is left out. After a failure
-/// it begins a new file every kRetry with the first message that is not wholly in the file before. All methods block as
+/// it begins a new file every kRetry with the first message that is not wholly in the file before. Old logs are removed
+/// once a new file is on the medium. A name that another program took meanwhile is passed over. All methods block as
 /// long as the file system does.
 class LogFiles {
 public:
@@ -63,7 +65,10 @@ public:
     [[nodiscard]] int take_news() noexcept { return news_ == 0 ? 0 : news_.exchange(0); }
 
 private:
+    void choose_run();
+    [[nodiscard]] int create_file();
     [[nodiscard]] bool begin_file(std::int64_t now);
+    [[nodiscard]] bool sync(std::int64_t now);
     void write_messages(std::int64_t now);
     void note_parameters(std::span<const std::byte> messages);
     void prune();
@@ -72,11 +77,13 @@ private:
     FileOptions options_;
     Definitions definitions_;
     std::unique_ptr<Disk> disk_;
-    std::string run_;   ///< first part of the files' names
-    std::string path_;  ///< of the present file
+    std::time_t run_time_;  ///< in the names of this run
+    std::string run_;       ///< first part of the files' names
+    std::string path_;      ///< of the present file
     std::uint32_t next_ = 0;
     bool is_open_ = false;
     bool is_dirty_ = false;
+    bool is_stored_ = false;  ///< the present file was synchronised once
     std::uint64_t size_ = 0;
     std::int64_t retry_at_ = 0;
     std::int64_t synced_at_ = 0;

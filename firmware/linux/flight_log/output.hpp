@@ -27,7 +27,7 @@ class Output {
 public:
     /// @param messages  whole ones, `count` of them
     /// @param records   those at the head of them that are no use to whoever shows the flight
-    /// @return false: all dropped, and counted
+    /// @return false: all dropped, and counted; of several outputs by one at least
     virtual bool add(std::span<const std::byte> messages, std::uint32_t count, Records records) noexcept = 0;
     /// A message that could not be composed.
     virtual void lose() noexcept = 0;

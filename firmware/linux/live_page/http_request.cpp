@@ -55,11 +55,11 @@ bool is_digits(std::string_view text) noexcept
     return std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// localhost, 127.0.0.1 or [::1], with or without a port.
-bool is_this_machine(std::string_view host) noexcept
+/// localhost, 127.0.0.1, [::1] or `loopback`, with or without a port.
+bool is_this_machine(std::string_view host, std::string_view loopback) noexcept
 {
-    constexpr std::array<std::string_view, 3> kNames{"localhost", "127.0.0.1", "[::1]"};
-    return std::any_of(kNames.begin(), kNames.end(), [&](std::string_view name) {
+    const std::array<std::string_view, 4> names{"localhost", "127.0.0.1", "[::1]", loopback};
+    return std::any_of(names.begin(), names.end(), [&](std::string_view name) {
         const std::string_view rest = host.substr(std::min(name.size(), host.size()));
         return equal_without_case(host.substr(0, name.size()), name) &&
                (rest.empty() || (rest.front() == ':' && is_digits(rest.substr(1))));
@@ -91,7 +91,7 @@ std::size_t head_length(std::string_view text) noexcept
     return end == text.npos ? 0 : end + kHeadEnd.size();
 }
 
-HttpRequest read_request(std::string_view head, bool local_alone) noexcept
+HttpRequest read_request(std::string_view head, std::string_view loopback) noexcept
 {
     std::string_view rest = head;
     const std::string_view line = take_line(rest);
@@ -108,7 +108,7 @@ HttpRequest read_request(std::string_view head, bool local_alone) noexcept
         (version != "HTTP/1.1" && version != "HTTP/1.0") || !read_fields(rest, host)) {
         return {HttpStatus::bad_request};
     }
-    if (local_alone && !is_this_machine(host)) {
+    if (!loopback.empty() && !is_this_machine(host, loopback)) {
         return {HttpStatus::misdirected};
     }
     if (method != "GET") {

@@ -35,10 +35,11 @@ inline constexpr std::size_t kMaxHead = 8U * 1024U;
 
 /// Judges a complete head.
 ///
-/// @param local_alone  Host has to be localhost, 127.0.0.1 or [::1], with any port: a name that an attacker's DNS
-///                     points to this machine is refused
+/// @param loopback  the address that is served; empty: not on loopback. On loopback Host has to be this address,
+///                  localhost, 127.0.0.1 or [::1], with any port: a name that an attacker's DNS points to this machine
+///                  is refused
 /// O(length).
-[[nodiscard]] HttpRequest read_request(std::string_view head, bool local_alone) noexcept;
+[[nodiscard]] HttpRequest read_request(std::string_view head, std::string_view loopback) noexcept;
 
 /// "404 Not Found"
 [[nodiscard]] std::string_view text_of(HttpStatus status) noexcept;

@@ -32,16 +32,20 @@ constexpr std::string_view kFields =
     "img-src data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'\r\n"
     "Connection: close\r\n";
 
-bool is_loopback(const hal::NetworkAddress& address)
+/// An address of loopback as Host names it; empty: another address.
+std::string loopback_of(const hal::NetworkAddress& address)
 {
     if (address.storage.ss_family == AF_INET) {
         sockaddr_in v4{};
         std::memcpy(&v4, &address.storage, sizeof v4);
-        return ntohl(v4.sin_addr.s_addr) >> 24U == 127U;
+        std::array<char, INET_ADDRSTRLEN> text{};
+        const bool is_loopback = ntohl(v4.sin_addr.s_addr) >> 24U == 127U;
+        return is_loopback && ::inet_ntop(AF_INET, &v4.sin_addr, text.data(), text.size()) != nullptr ? text.data()
+                                                                                                      : "";
     }
     sockaddr_in6 v6{};
     std::memcpy(&v6, &address.storage, sizeof v6);
-    return IN6_IS_ADDR_LOOPBACK(&v6.sin6_addr);
+    return IN6_IS_ADDR_LOOPBACK(&v6.sin6_addr) ? "[::1]" : "";
 }
 
 std::string head_of(HttpStatus status, std::string_view type, std::size_t length)
@@ -97,7 +101,7 @@ int Server::listen(const hal::NetworkAddress& address)
     if (::bind(listener_, own, address.length) != 0 || ::listen(listener_, kBacklog) != 0) {
         return errno;
     }
-    local_alone_ = is_loopback(address);
+    loopback_ = loopback_of(address);
     clients_.reserve(kMaxClients);
     return 0;
 }
@@ -199,7 +203,7 @@ void Server::read_head(Client& client, std::int64_t now_us, const Snapshot& snap
     if (length == 0) {
         return;
     }
-    const HttpRequest request = read_request(std::string_view(client.in).substr(0, length), local_alone_);
+    const HttpRequest request = read_request(std::string_view(client.in).substr(0, length), loopback_);
     if (request.status == HttpStatus::ok && request.resource == Resource::events) {
         begin_events(client, now_us, snapshot);
     } else {

@@ -69,7 +69,7 @@ private:
 
     std::string page_;
     int listener_ = -1;
-    bool local_alone_ = true;
+    std::string loopback_;  ///< the address that is served; empty: not on loopback
     std::vector<Client> clients_;
     PageCounts counts_;
 };

@@ -183,6 +183,8 @@ void Snapshot::add_step(std::string& out) const
 {
     const auto control = static_cast<app::Control>(step_.control);
     const bool in_control = control == app::Control::ours || control == app::Control::returning;
+    // Of the machine's monotonic clock: another run of jinkd begins at another time.
+    add(out, "\"run\":%llu,", static_cast<unsigned long long>(start_.value_or(0)));
     add(out, "\"time\":%.3f,\"step\":%u,\"work\":%u,\"longest_step_ms\":%.3f,\"deadlines_missed\":%u,\"decisions\":%u",
         seconds(step_.timestamp), step_.step, max_work_, max_us_ * 1e-3, deadlines_, decisions_);
     add_name(out, "state", name_of(static_cast<link::SystemState>(step_.state)));
@@ -247,7 +249,7 @@ void Snapshot::add_tracks(std::string& out) const
         if (since > kTrackLife) {
             continue;
         }
-        add(out, "%s{\"id\":%u,\"position\":", separator, track.id);
+        add(out, "%s{\"id\":%u,\"instance\":%u,\"position\":", separator, track.id, unsigned{track.instance});
         add_vector(out, track.position, track.velocity, since);
         out += ",\"velocity\":";
         add_vector(out, track.velocity);

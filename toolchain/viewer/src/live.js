@@ -2,7 +2,7 @@
 // The live page of jinkd: the state of the flight as it comes, and how old it is.
 import { Charts } from "./charts.js";
 import { decisionAt } from "./data.js";
-import { LiveFlight, separationTo } from "./live_flight.js";
+import { LiveFlight, separationTo, trackName } from "./live_flight.js";
 import { Replay } from "./replay.js";
 import { COLOURS, believedKeys, candidateKeys, decisionText, key, make, measure, nominalKeys } from "./words.js";
 
@@ -72,7 +72,7 @@ function showReadout() {
     ["messages lost", measure(state.page.messages_lost, "", 0)]];
   at("readout").replaceChildren(...rows.map(([name, value]) => make("div", {}, make("dt", { textContent: name }), make("dd", { textContent: value }))));
   const own = flight.own.map((column) => column[i]);
-  at("tracks").replaceChildren(...state.tracks.map((track) => make("tr", {}, make("td", { textContent: track.id }),
+  at("tracks").replaceChildren(...state.tracks.map((track) => make("tr", {}, make("td", { textContent: trackName(track) }),
     ...[measure(separationTo(own, track), "m"), measure(Math.hypot(...track.velocity), "m/s", 1), measure(track.radius, "m"), measure(track.age, "s")]
       .map((text) => make("td", { className: "n", textContent: text })))));
 }
@@ -102,7 +102,7 @@ function take(json) {
   state = json;
   arrived = performance.now();
   ++events;
-  const texts = flight.lastText, before = flight.safety_distance;
+  const { run, lastText, safety_distance } = flight;
   flight.take(state);
   const time = flight.t[flight.t.length - 1];
   if (replay) {
@@ -114,8 +114,8 @@ function take(json) {
     charts.show(flight, null, 0);
     charted = arrived;
   }
-  if (flight.lastText !== texts) showTexts();
-  if (flight.safety_distance !== before) nameSeries();
+  if (flight.run !== run || flight.lastText !== lastText) showTexts();
+  if (flight.safety_distance !== safety_distance) nameSeries();
   showConnection();
   showReadout();
   showDecision(time);

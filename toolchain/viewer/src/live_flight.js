@@ -14,6 +14,9 @@ export function separationTo(own, track) {
   return Math.hypot(own[0] - at[0], own[1] - at[1], up) - (track.radius || 0);
 }
 
+/** Two aircraft under one id differ in their instance. */
+export const trackName = (track) => `${track.id}${track.instance ? ` (${track.instance + 1})` : ""}`;
+
 export class LiveFlight {
   constructor() { this.clear(); }
 
@@ -21,12 +24,13 @@ export class LiveFlight {
     const columns = () => [[], [], []];
     Object.assign(this, { name: "live", t: [], own: columns(), velocity: columns(), command: columns(), separation: [], work: [], speed: [],
       commanded: [], phases: [], events: [], decisions: [], threats: [], mission: columns(), safety_distance: null, least: null,
-      least_time: NaN, step: -1, lastDecision: null, lastText: -1, nominal: { t: [], paths: [] }, shapes: { t: [], lists: [] } });
+      least_time: NaN, run: null, step: -1, lastDecision: null, lastText: -1, nominal: { t: [], paths: [] }, shapes: { t: [], lists: [] } });
   }
 
   /** Takes one event of jinkd. */
   take(state) {
-    if (state.step < this.step) this.clear();  // jinkd began anew
+    if (state.run !== this.run) this.clear();  // jinkd began anew
+    this.run = state.run;
     this.takeShapes(state.shapes);
     if (state.step === this.step) { this.takeTexts(state); return; }
     this.step = state.step;
@@ -70,15 +74,15 @@ export class LiveFlight {
 
   takeTracks(tracks) {
     for (const threat of this.threats) {
-      const track = tracks.find((t) => t.id === threat.id);
+      const track = tracks.find((t) => t.id === threat.id && t.instance === threat.instance);
       const at = vectorOf(track && track.position);
       for (let k = 0; k < 3; ++k) threat.position[k].push(at[k]);
       if (track) Object.assign(threat, { radius: track.radius || 0, half_height: track.half_height || 0, seen: this.step });
     }
     for (const track of tracks) {
-      if (this.threats.some((t) => t.id === track.id)) continue;
-      this.threats.push({ id: track.id, name: `track ${track.id}`, form: "sphere", radius: track.radius || 0, half_height: track.half_height || 0,
-        moves: true, first: this.t.length - 1, position: vectorOf(track.position).map((x) => [x]), seen: this.step });
+      if (this.threats.some((t) => t.id === track.id && t.instance === track.instance)) continue;
+      this.threats.push({ id: track.id, instance: track.instance, name: `track ${trackName(track)}`, form: "sphere", radius: track.radius || 0,
+        half_height: track.half_height || 0, moves: true, first: this.t.length - 1, position: vectorOf(track.position).map((x) => [x]), seen: this.step });
     }
   }
 
