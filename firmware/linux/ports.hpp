@@ -59,7 +59,7 @@ private:
 [[nodiscard]] bool open_can(hal::SocketCanPort& port, const std::string& interface);
 /// Opens the watchdogs, `device` and the service manager; false, with a message, if the device cannot be used.
 [[nodiscard]] bool open_watchdog(hal::LinuxWatchdog& watchdog, const std::string& device);
-/// Tells the service manager, if there is one, that nothing can refuse any more; says so if it cannot be told.
+/// Tells the service manager, if there is one, that nothing can refuse any more; says so if that fails.
 void notify_ready(hal::LinuxWatchdog& watchdog);
 
 }  // namespace jink::host

@@ -74,7 +74,7 @@ TEST(Jinkd, SaysThatAStateFileCannotBeOpened)
     Scratch scratch;
     Cable cable;
     const std::string state = (scratch / "state").string();
-    fs::create_symlink(state, state);  // is there, and cannot be looked at
+    fs::create_symlink(state, state);  // is there, and cannot be opened
     Daemon daemon({"--serial", cable.path(), "--state", state}, scratch / "out");
     EXPECT_TRUE(cable.heartbeat(kPatience));
     daemon.signal(SIGTERM);

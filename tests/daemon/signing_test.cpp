@@ -144,7 +144,7 @@ TEST_F(DaemonSigning, RefusesKeysItCannotUse)
 {
     const std::string short_key = key_file("2a2a\n");
     std::ofstream(path("damaged.signing")) << "key 12\n";
-    fs::create_symlink(path("loop.signing"), path("loop.signing"));  // is there, and cannot be looked at
+    fs::create_symlink(path("loop.signing"), path("loop.signing"));  // is there, and cannot be opened
     const std::vector<std::vector<std::string>> cases{
         {"--signing-key", short_key},   {"--signing-key", path("none")}, {"--unsigned", "1,2,3,4,5,6,7,8,9"},
         {"--unsigned", "RADIO_STATUS"}, {"--unsigned", "1,,2"},          {"--state", path("damaged")},
