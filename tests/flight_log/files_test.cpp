@@ -96,8 +96,7 @@ TEST(LogFiles, TheOldestAreRemovedAndOtherFilesStay)
     Store store;
     store.files["jink_20200101_000000_000.ulg"] = "old";
     store.files["jink_29990101_000000_000.ulg"] = "of a clock that was wrong";
-    const std::string renamed[] = {"notes.txt", "jink_2020-01-01_crash_to_keep.ulg",
-                                   "jink_20200101_000000_000_keep.ulg"};
+    const std::string renamed[] = {"notes.txt", "jink_2020-01-01_crash_kept.ulg", "jink_20200101_000000_000_kept.ulg"};
     for (const std::string& name : renamed) {
         store.files[name] = "not a log";
     }

@@ -80,10 +80,7 @@ TEST(FewerMethods, ARefusalIsAnsweredWithTheValueThatHoldsAndSaid)
     EXPECT_EQ(bench.said("jink: JNK_METHODS refused, method not built in"), 1);
 }
 
-TEST(FewerMethods, TheSetsAreThoseThatTheBuildNames)
-{
-    EXPECT_EQ(&reach_sets(), &reach::kDefaultReducedSets);
-}
+TEST(FewerMethods, TheSetsAreThoseThatTheBuildNames) { EXPECT_EQ(&reach_sets(), &reach::kDefaultReducedSets); }
 
 TEST(FewerMethods, ReachSetsPlanByThemselves)
 {
