@@ -183,7 +183,7 @@ TEST(DaemonNetwork, RefusesWhatNamesNoLineAndSaysWhy)
         {{"--link", ""}, "--link: a value is needed"},
         {{"--serial", ""}, "--serial: a value is needed"},
         {{"--link", "udp:14540", "--map", ""}, "--map: a value is needed"},
-        {{"--link", "udp:14540", "--airspace="}, "--airspace: a value is needed"},
+        {{"--link", "udp:14540", "--airspace="}, "--airspace: 1 required TEXT missing"},
         {{"--link", "udp:14540", "--signing-key", ""}, "--signing-key: a value is needed"},
         {{"--link", "udp:14540", "--status-period", "nan"}, "--status-period"},
         {{"--serial", "udp:14540"}, "--link udp:14540"},
