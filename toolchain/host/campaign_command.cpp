@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -15,6 +14,7 @@
 #include "firmware/linux/param_store.hpp"
 #include "toolchain/host/campaign_command.hpp"
 #include "toolchain/host/commands.hpp"
+#include "toolchain/host/header_text.hpp"
 
 namespace jink::host {
 namespace {
@@ -50,10 +50,7 @@ void print_json(const CampaignResult& result, double seconds)
 void run_campaign(const CampaignOptions& options)
 {
     // Fails before the flights instead of after them.
-    if (!options.csv.empty() && !std::ofstream(options.csv, std::ios::app)) {
-        std::fprintf(stderr, "campaign: %s cannot be written\n", options.csv.c_str());
-        throw CLI::RuntimeError(kExitBadInput);
-    }
+    check_outputs("campaign", {}, {options.csv});
     const bool watched = isatty(STDERR_FILENO) != 0;
     const auto began = std::chrono::steady_clock::now();
     std::size_t reported = 0;

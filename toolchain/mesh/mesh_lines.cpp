@@ -4,10 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <cstdint>
-#include <limits>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +15,7 @@ namespace jink::mesh {
 namespace {
 
 using files::in_quotes;
+using files::NumberStatus;
 
 constexpr std::string_view kBlanks = " \t";
 
@@ -87,23 +85,13 @@ std::size_t for_each_line(std::string_view text, const Take& take)
     return number;
 }
 
-/// A decimal number that is the whole of the word; nothing else.
-std::optional<double> number_of(std::string_view text)
-{
-    if (text.starts_with('+') && text.size() > 1 && text[1] != '-') {
-        text.remove_prefix(1);
-    }
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return error == std::errc{} && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
-}
-
 void check_numbers(const Line& line, std::size_t first, std::size_t count, bool all_finite)
 {
     for (std::size_t i = first; i < first + count; ++i) {
-        const std::optional<double> value = i < line.words.size() ? number_of(line.words[i].text) : std::nullopt;
-        const bool fits = value && std::abs(*value) <= static_cast<double>(std::numeric_limits<float>::max());
-        if (all_finite ? !fits : !value) {
+        float value = 0.0F;
+        const NumberStatus status =
+            i < line.words.size() ? files::parse_number(line.words[i].text, value) : NumberStatus::not_a_number;
+        if (all_finite ? status != NumberStatus::ok : status == NumberStatus::not_a_number) {
             line.want(i, all_finite ? "a finite decimal number" : "a decimal number");
         }
     }
