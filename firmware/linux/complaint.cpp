@@ -85,12 +85,13 @@ std::string in_quotes(std::string_view text)
     return out;
 }
 
-NumberStatus parse_number(std::string_view text, float& out)
+template <class Number>
+static NumberStatus parse(std::string_view text, Number& out)
 {
     if (text.starts_with('+') && text.size() > 1 && text[1] != '-') {
         text.remove_prefix(1);
     }
-    float value = 0.0F;
+    Number value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error == std::errc::result_out_of_range && end == text.data() + text.size()) {
         return NumberStatus::too_big;
@@ -104,6 +105,9 @@ NumberStatus parse_number(std::string_view text, float& out)
     out = value;
     return NumberStatus::ok;
 }
+
+NumberStatus parse_number(std::string_view text, float& out) { return parse(text, out); }
+NumberStatus parse_number(std::string_view text, double& out) { return parse(text, out); }
 
 std::optional<std::string> judge_number(std::string_view text, const Range& range, bool integer, float& out)
 {

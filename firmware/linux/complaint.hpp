@@ -43,6 +43,7 @@ enum class NumberStatus { ok, not_a_number, not_finite, too_big };
 /// Reads a decimal number that is the whole of `text`: optional sign, no blanks, no hexadecimal. Independent of the
 /// locale.
 [[nodiscard]] NumberStatus parse_number(std::string_view text, float& out);
+[[nodiscard]] NumberStatus parse_number(std::string_view text, double& out);
 /// Error text for an invalid number or a number outside `range`; nothing if the number is good.
 [[nodiscard]] std::optional<std::string> judge_number(std::string_view text, const Range& range, bool integer,
                                                       float& out);

@@ -46,7 +46,7 @@ def check_refusals(options):
         stub.write_bytes(STUB)
         for text in ("", "0", "65536", "-1", "80x", "x", "8080:", ":8080", "::1:8080", "[::1]", "[::1:8080", "1.2.3:8080", "1.2.3.4.5:8080",
                      "example.org:8080", "127.0.0.1:", "127.0.0.1:0", "127.0.0.1:99999999999999999999", " 8080", "8080 "):
-            refused("--page", text, "--page-file", stub, names="PORT" if text == "" else text)
+            refused("--page", text, "--page-file", stub, names=text)
         refused("--page-file", stub)
         missing, empty, huge, fifo = folder / "missing.html", folder / "empty.html", folder / "huge.html", folder / "fifo.html"
         empty.touch()

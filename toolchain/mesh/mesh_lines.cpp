@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -88,10 +90,12 @@ std::size_t for_each_line(std::string_view text, const Take& take)
 void check_numbers(const Line& line, std::size_t first, std::size_t count, bool all_finite)
 {
     for (std::size_t i = first; i < first + count; ++i) {
-        float value = 0.0F;
+        double value = 0.0;
         const NumberStatus status =
             i < line.words.size() ? files::parse_number(line.words[i].text, value) : NumberStatus::not_a_number;
-        if (all_finite ? status != NumberStatus::ok : status == NumberStatus::not_a_number) {
+        const bool fits =
+            status == NumberStatus::ok && std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max());
+        if (all_finite ? !fits : status == NumberStatus::not_a_number) {
             line.want(i, all_finite ? "a finite decimal number" : "a decimal number");
         }
     }
