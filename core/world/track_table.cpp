@@ -24,6 +24,8 @@ constexpr float kNewcomer = 1.5F;
 constexpr float kNewcomerInFlood = 2.0F;
 constexpr float kOwnSensor = 0.5F;
 constexpr Seconds kFloodWindow = 1.0F;
+/// An aircraft that moved by more is not at the same place to 0.01 m, as links say it [m].
+constexpr float kMoved = 0.05F;
 
 std::uint32_t& counter(TrackDiagnostics& d, TrackStatus status) noexcept
 {
@@ -45,6 +47,18 @@ bool all_finite(const TrackMeasurement& m) noexcept
     return is_finite(m.position) && is_finite(m.velocity) && std::isfinite(m.radius) &&
            std::isfinite(m.sigma_position) && std::isfinite(m.sigma_velocity) && std::isfinite(m.max_acceleration) &&
            std::isfinite(m.half_height);
+}
+
+/// Of place and velocity. The rotation carries a change of any bit, a sign's too, into all that follow.
+std::uint32_t fingerprint(const TrackMeasurement& m) noexcept
+{
+    std::uint32_t hash = 0;
+    for (const Vec3* const v : {&m.position, &m.velocity}) {
+        for (const float x : *v) {
+            hash = (std::rotl(hash, 13) ^ std::bit_cast<std::uint32_t>(x)) * 0x9E3779B1U;
+        }
+    }
+    return hash;
 }
 
 }  // namespace
@@ -109,6 +123,7 @@ TrackTable::Entry TrackTable::start(const TrackMeasurement& m) const noexcept
                    0,
                    m.manned,
                    m.half_height};
+    entry.said = fingerprint(m);
     return entry;
 }
 
@@ -166,7 +181,14 @@ void TrackTable::filter(Entry& e, const TrackMeasurement& m) noexcept
                m.radius,     std::sqrt(vpp), std::sqrt(vvv),   m.max_acceleration,
                m.source,     m.cooperative,  e.track.instance, m.manned,
                m.half_height};
+    e.said = fingerprint(m);
     e.sightings = static_cast<std::uint16_t>(std::min<unsigned>(e.sightings + 1U, 0xFFFFU));
+}
+
+bool TrackTable::repeats(const Entry& e, const TrackMeasurement& m) noexcept
+{
+    return m.has_velocity && m.velocity.norm() * std::abs(m.stamp - e.track.stamp) > kMoved &&
+           e.said == fingerprint(m);
 }
 
 /// Whether the track could have reached the sighting; `cost` says how well it fits, the less the better.
@@ -220,6 +242,7 @@ TrackTable::Match TrackTable::match(const TrackMeasurement& m, const vehicle::Ve
         if (e.track.id != m.id) {
             continue;
         }
+        out.repeated = out.repeated || repeats(e, m);
         taken |= 1U << e.track.instance;
         ++out.count;
         const float its = urgency_of(e, own, now);
@@ -272,7 +295,9 @@ TrackStatus TrackTable::update(const TrackMeasurement& m, const vehicle::Vehicle
     TrackStatus status = admit(m, own, now);
     if (status == TrackStatus::updated) {
         const Match found = match(m, own, now);
-        if (found.best == kNone) {
+        if (found.repeated) {
+            status = TrackStatus::stale;
+        } else if (found.best == kNone) {
             status = add(m, found, own, now);
         } else if (m.stamp <= entries_[found.best].track.stamp) {
             status = TrackStatus::stale;

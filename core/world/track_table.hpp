@@ -34,7 +34,7 @@ enum class TrackStatus : std::uint8_t {
     not_finite,    ///< NaN or infinity
     out_of_range,  ///< farther, larger or less certain than `max_range`, faster or less certain in that than
                    ///< `max_speed`, sigmas below 0.1 mm, acceleration not in 0..1000 m/s2
-    stale,         ///< too old to be kept, or not newer than the track that it fits
+    stale,         ///< too old to be kept, or not newer than the track that it fits: stamped no later, or repeated
     future,        ///< stamped later than now
     full,          ///< table full, or kMaxSameId tracks of this id, and the sighting is the least urgent
 };
@@ -77,6 +77,9 @@ struct TrackTableSettings {
 /// Sightings of an uncertain height and those of a known one have tracks of their own. Two aircraft of one id that are
 /// first seen nearer to each other than that reach share a track until they part.
 ///
+/// Receivers repeat what they heard last. A sighting with exactly the place and velocity of the one before, of an
+/// aircraft that moves, is such a repetition: it is refused, so that the track's age stays that of what was heard.
+///
 /// Memory: kMaxTracks * (sizeof(Track) + 16) bytes. Nothing is dropped without a count.
 class TrackTable {
 public:
@@ -109,6 +112,7 @@ private:
         float covariance = 0.0F;
         float variance_velocity = 0.0F;
         std::uint16_t sightings = 1;  ///< saturates
+        std::uint32_t said = 0;       ///< fingerprint of the last sighting's place and velocity
     };
     /// The tracks of one id, and which of them a sighting fits.
     struct Match {
@@ -116,12 +120,14 @@ private:
         std::size_t least_urgent = kNone;  ///< of those of the id
         std::size_t count = 0;
         std::uint8_t free_instance = 0;
+        bool repeated = false;  ///< the last sighting of one of them again, and the aircraft moves
     };
     static constexpr std::size_t kNone = kMaxTracks;
 
     [[nodiscard]] Seconds most_age(bool cooperative) const noexcept;
     [[nodiscard]] TrackStatus admit(const TrackMeasurement& m, const vehicle::VehicleState& own,
                                     TimePoint now) const noexcept;
+    [[nodiscard]] static bool repeats(const Entry& entry, const TrackMeasurement& m) noexcept;
     [[nodiscard]] Entry start(const TrackMeasurement& m) const noexcept;
     void filter(Entry& entry, const TrackMeasurement& m) noexcept;
     [[nodiscard]] bool fit(const Entry& entry, const TrackMeasurement& m, float& cost) const noexcept;

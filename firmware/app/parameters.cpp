@@ -34,6 +34,7 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     {"TRK_LATENCY", 0.1F, 0, 2, false, "age of a traffic report on arrival [s]"},
     {"TRK_AGE", 3, 0.2F, 60, false, "traffic not heard for longer is dropped, cooperative after 10 s at least [s]"},
     {"OBS_HEIGHT", 10, 0.5F, 500, false, "half height given to what a level scan sees [m]"},
+    {"OBS_LATENCY", 0.1F, 0, 1, false, "age of a range reading or scan on arrival [s]"},
     {"OBS_KEEP", 1, 0.1F, 60, false, "what a scan saw is kept this long [s]"},
     {"OWN_AGE", 0.5F, 0.05F, 2, false, "own state older than this is a fault [s]"},
     {"HB_AGE", 4.5F, 1.5F, 20, false, "autopilot heartbeat older than this is a fault [s]"},
@@ -130,6 +131,7 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     c.sigma_baro = at(Param::sigma_baro);
     c.sigma_compared = at(Param::sigma_compared);
     c.scan_height = at(Param::scan_height);
+    c.scan_latency = at(Param::scan_latency);
     c.scan_keep = at(Param::scan_keep);
     c.own_age = at(Param::own_age);
     c.heartbeat_age = at(Param::heartbeat_age);

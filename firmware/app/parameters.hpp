@@ -40,6 +40,7 @@ enum class Param : std::uint8_t {
     track_latency,
     track_age,
     scan_height,
+    scan_latency,
     scan_keep,
     own_age,
     heartbeat_age,
@@ -137,7 +138,7 @@ struct Configuration {
     float scan_height = 10.0F;    ///< half height given to what a level scan sees [m]
     bool coop_systems = true, coop_utm = true, coop_unmanned = true, coop_all = false;  ///< who is cooperative
     std::uint32_t own_address = 0;                                                      ///< 24 bits; 0: not known
-    Seconds scan_keep = 1.0F;
+    Seconds scan_latency = 0.1F, scan_keep = 1.0F;
     Seconds own_age = 0.5F, heartbeat_age = 4.5F;  ///< older is a fault [s]
     Seconds setpoint_period = 0.05F;
     bool stands_by = false;

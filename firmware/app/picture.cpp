@@ -87,13 +87,15 @@ void Picture::take_ranges(const link::Inbox& inbox, const OwnState& own, const C
     if (!own.is_known()) {
         return;
     }
-    const Vec3& place = own.measured().position;
+    // Where the vehicle was when the sensor saw it.
+    const auto seen_from = [&](TimePoint arrival) { return own.place_at(arrival - c.scan_latency, c.own_age); };
     for (const link::RangeScan& scan : inbox.scans) {
         ++counts_.scans;
-        place_scan(scan, place, c, obstacles_);
+        place_scan(scan, seen_from(scan.stamp), c, obstacles_);
     }
     for (const link::RangeReading& reading : inbox.readings) {
         ++counts_.readings;
+        const Vec3 place = seen_from(reading.stamp);
         if (!sees_ground(reading)) {
             counts_.readings_refused += place_reading(reading, place, c, obstacles_) ? 0U : 1U;
         } else if (reading.range == link::RangeScan::kNothing) {

@@ -5,8 +5,9 @@
 #include "firmware/app/parameters.hpp"
 #include "firmware/link/messages.hpp"
 
-// What range sensors see becomes obstacles about the own place (range_return.hpp), which expire after OBS_KEEP. Ids:
-// scans 0x01000000, single readings 0x02000000 on. Each refusal is counted in the table.
+// What range sensors see becomes obstacles about `own`, the own place at that time (range_return.hpp), which expire
+// OBS_KEEP after their arrival. Ids: scans 0x01000000, single readings 0x02000000 on. Each refusal is counted in the
+// table.
 
 namespace jink::app {
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <initializer_list>
 #include <numbers>
@@ -75,12 +74,8 @@ std::string lower(std::string word)
 std::optional<double> number_of(std::string_view word)
 {
     constexpr double kLargest = 1e13;
-    if (word.size() > 1 && word[0] == '+' && word[1] != '-') {
-        word.remove_prefix(1);
-    }
     double value = 0.0;
-    const auto [end, bad] = std::from_chars(word.data(), word.data() + word.size(), value);
-    const bool good = bad == std::errc{} && end == word.data() + word.size() && std::abs(value) <= kLargest;
+    const bool good = files::parse_number(word, value) == files::NumberStatus::ok && std::abs(value) <= kLargest;
     return good ? std::optional(value) : std::nullopt;
 }
 

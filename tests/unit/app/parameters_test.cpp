@@ -293,6 +293,7 @@ std::vector<Route> routes()
         same(Param::track_latency, 1.1F, [](C c) { return c.track_latency; }),
         same(Param::track_age, 7.7F, [](C c) { return c.tracks.max_age; }),
         same(Param::scan_height, 12, [](C c) { return c.scan_height; }),
+        same(Param::scan_latency, 0.4F, [](C c) { return c.scan_latency; }),
         same(Param::scan_keep, 2.6F, [](C c) { return c.scan_keep; }),
         same(Param::own_age, 0.7F, [](C c) { return c.own_age; }),
         same(Param::heartbeat_age, 3.5F, [](C c) { return c.heartbeat_age; }),

@@ -35,13 +35,13 @@ struct ShownWorld final : Clouds {
 class StepRanges : public testing::Test {
 protected:
     explicit StepRanges(std::initializer_list<std::pair<Param, float>> changes = {})
-        : bench(std::make_unique<StepBench>(changes))
     {
-        bench->coprocessor.use_clouds(world);
+        fly_to(changes);
     }
     void fly_to(std::initializer_list<std::pair<Param, float>> changes)
     {
         bench = std::make_unique<StepBench>(changes);
+        bench->velocity = Vec3::Zero();
         bench->coprocessor.use_clouds(world);
     }
     [[nodiscard]] RangeScan& scan(std::initializer_list<float> ranges, float yaw_first, float increment)
