@@ -187,8 +187,7 @@ void TrackTable::filter(Entry& e, const TrackMeasurement& m) noexcept
 
 bool TrackTable::repeats(const Entry& e, const TrackMeasurement& m) noexcept
 {
-    return m.has_velocity && m.velocity.norm() * std::abs(m.stamp - e.track.stamp) > kMoved &&
-           e.said == fingerprint(m);
+    return m.has_velocity && m.velocity.norm() * std::abs(m.stamp - e.track.stamp) > kMoved && e.said == fingerprint(m);
 }
 
 /// Whether the track could have reached the sighting; `cost` says how well it fits, the less the better.

@@ -34,10 +34,7 @@ struct ShownWorld final : Clouds {
 
 class StepRanges : public testing::Test {
 protected:
-    explicit StepRanges(std::initializer_list<std::pair<Param, float>> changes = {})
-    {
-        fly_to(changes);
-    }
+    explicit StepRanges(std::initializer_list<std::pair<Param, float>> changes = {}) { fly_to(changes); }
     void fly_to(std::initializer_list<std::pair<Param, float>> changes)
     {
         bench = std::make_unique<StepBench>(changes);
