@@ -50,7 +50,7 @@ bool all_finite(const TrackMeasurement& m) noexcept
 }
 
 /// Of place and velocity. The rotation carries a change of any bit, a sign's too, into all that follow.
-std::uint32_t fingerprint(const TrackMeasurement& m) noexcept
+[[gnu::noinline]] std::uint32_t fingerprint(const TrackMeasurement& m) noexcept
 {
     std::uint32_t hash = 0;
     for (const Vec3* const v : {&m.position, &m.velocity}) {

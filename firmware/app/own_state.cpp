@@ -21,6 +21,11 @@ Jump OwnState::use(const link::OwnStateReport& report, OwnSource source) noexcep
     return changed ? Jump::source : Jump::none;
 }
 
+Vec3 OwnState::place_at(TimePoint time, Seconds max_age) const noexcept
+{
+    return state_.position + state_.velocity * std::clamp(time - state_.stamp, -max_age, max_age);
+}
+
 Jump OwnState::take_autopilot(const link::OwnStateReport& report, TimePoint now) noexcept
 {
     const TimePoint stamp = report.state.stamp;

@@ -60,10 +60,7 @@ public:
         return own;
     }
     /// The place at `time`, up to `max_age` [s] before or after the newest report.
-    [[nodiscard]] Vec3 place_at(TimePoint time, Seconds max_age) const noexcept
-    {
-        return state_.position + state_.velocity * std::clamp(time - state_.stamp, -max_age, max_age);
-    }
+    [[nodiscard]] Vec3 place_at(TimePoint time, Seconds max_age) const noexcept;
     /// Of the autopilot's newest own state.
     [[nodiscard]] const std::optional<TimePoint>& autopilot_stamp() const noexcept { return autopilot_stamp_; }
 
