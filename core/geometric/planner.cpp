@@ -41,7 +41,7 @@ Problem problem_of(const Situation& situation, const world::Way& way, const worl
     problem.main_centre_offset = conflict.threat_at_closest - conflict.own_at_closest;
     if (conflict.threat.kind == world::ThreatKind::track) {
         problem.main = conflict.threat.index;
-    } else {
+    } else if (conflict.threat.kind == world::ThreatKind::obstacle) {
         problem.main_shape = main.solid->kind == geometry::ShapeKind::sphere ? nullptr : main.solid;
         problem.main_clearance = world::own_uncertainty(situation);
     }
@@ -200,10 +200,6 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     }
     if (!found) {
         return PlanStatus::no_conflict;
-    }
-    if (conflict.threat.kind != world::ThreatKind::track && conflict.threat.kind != world::ThreatKind::obstacle) {
-        // Curves of a few main radii do not lead around a closed area of hundreds of metres.
-        return PlanStatus::none_available;
     }
     Problem problem = problem_of(situation, way, conflict);
     if (problem.distance < kMinDistanceInRadii * scale_radius(problem)) {

@@ -51,14 +51,18 @@ world::Cylinder closed_area_ahead()
     return area;
 }
 
-/// Its curves lead around spheres and solids. A closed area, even a small one, is left to the other methods.
-TEST(PlannerStatus, ClosedAreaAheadIsLeftToOtherMethods)
+/// Its curves reach a few radii to the side.
+TEST(PlannerStatus, AClosedAreaThatIsTooLargeIsTooClose)
 {
     Flight flight;
-    const world::Cylinder area = closed_area_ahead();
+    world::Cylinder area = closed_area_ahead();
     flight.airspace.cylinders = {&area, 1};
-    EXPECT_EQ(flight.plan(), PlanStatus::none_available);
-    EXPECT_TRUE(flight.out.path.points.empty());
+    EXPECT_EQ(flight.plan(), PlanStatus::found);
+    Flight before_a_large_one;
+    area.circle.radius = 13.0F;
+    before_a_large_one.airspace.cylinders = {&area, 1};
+    EXPECT_EQ(before_a_large_one.plan(), PlanStatus::too_close);
+    EXPECT_TRUE(before_a_large_one.out.path.points.empty());
 }
 
 TEST(PlannerStatus, BudgetSpentAtAClosedAreaIsSaid)
@@ -66,14 +70,14 @@ TEST(PlannerStatus, BudgetSpentAtAClosedAreaIsSaid)
     const world::Cylinder area = closed_area_ahead();
     std::uint32_t spent = 0;
     PlanStatus status = PlanStatus::budget_spent;
-    for (std::uint32_t units = 1; status == PlanStatus::budget_spent && units < 1000; ++units) {
+    for (std::uint32_t units = 1; status == PlanStatus::budget_spent && units < 100000; units += 7) {
         Flight flight;
         flight.airspace.cylinders = {&area, 1};
         flight.budget = WorkBudget{units};
         status = flight.plan();
         spent += status == PlanStatus::budget_spent ? 1U : 0U;
     }
-    EXPECT_EQ(status, PlanStatus::none_available);
+    EXPECT_EQ(status, PlanStatus::found);
     EXPECT_GE(spent, 1U);
 }
 
