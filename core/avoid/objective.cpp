@@ -8,6 +8,7 @@
 
 #include "core/base/work_units.hpp"
 #include "core/world/cost_to_go.hpp"
+#include "core/world/cylinder.hpp"
 #include "core/world/passing_side.hpp"
 #include "core/world/threat_set.hpp"
 
@@ -22,7 +23,8 @@ constexpr float kWantedMargin = 1.0F;     ///< [m]
 constexpr Seconds kMethodChange = 1.0F;   ///< for a change of the method
 constexpr Seconds kSideChange = 6.0F;     ///< for a change of the side
 constexpr Seconds kAgainstRules = 6.0F;   ///< for the side on which two vehicles do not pass
-constexpr Seconds kDeadEnd = 6.0F;        ///< for an obstacle on the straight way back to the route
+constexpr Seconds kDeadEnd = 6.0F;        ///< for what is on the straight way back to the route
+constexpr float kSideStep = 4.0F;         ///< to a closed area's side and back, at half the speed as from a stand
 constexpr Seconds kShortestWay = 1e-3F;   ///< such a way takes no less
 constexpr float kOppositeCosine = -0.1F;  ///< sides further apart than this (cosine) are opposite ones
 
@@ -41,15 +43,48 @@ Place place_of(const path::RouteView& route, float length, const Vec3& position,
 
 bool are_opposite(const Vec3& a, const Vec3& b) noexcept { return a.dot(b) < kOppositeCosine; }
 
-/// Whether any threat of a situation blocks the straight way from `from` to `to`, flown at `speed`.
-bool is_blocked(const world::Situation& s, const Vec3& from, const Vec3& to, float speed, WorkBudget& budget) noexcept
+/// From a manoeuvre's end straight back to the route.
+struct WayBack {
+    Vec3 from = Vec3::Zero();
+    Vec3 to = Vec3::Zero();
+    float speed = 0.0F;
+};
+
+/// Whether any threat of a situation blocks it.
+bool is_blocked(const world::Situation& s, const WayBack& way, WorkBudget& budget) noexcept
 {
     constexpr world::Cutoff kClearOrNot{0.0F, 0.0F, {}};
-    const Seconds duration = std::max(kShortestWay, (to - from).norm() / speed);
-    const Vec3 velocity = (to - from) / duration;
-    const std::array<path::PathPoint, 2> way{path::PathPoint{from, velocity, 0.0F},
-                                             path::PathPoint{to, velocity, duration}};
-    return world::least_separation(s, way, duration, budget, s.rules.escape, kClearOrNot).margin < 0.0F;
+    const Seconds duration = std::max(kShortestWay, (way.to - way.from).norm() / way.speed);
+    const Vec3 velocity = (way.to - way.from) / duration;
+    const std::array<path::PathPoint, 2> points{path::PathPoint{way.from, velocity, 0.0F},
+                                                path::PathPoint{way.to, velocity, duration}};
+    return world::least_separation(s, points, duration, budget, s.rules.escape, kClearOrNot).margin < 0.0F;
+}
+
+/// How far the way goes into a closed area's circle, seen from above [m], >= 0.
+float depth_of(const WayBack& way, const world::Cylinder& area) noexcept
+{
+    const world::Vec2 along = (way.to - way.from).head<2>();
+    const world::Vec2 to_centre = area.circle.centre - way.from.head<2>();
+    const float length2 = along.squaredNorm();
+    const float share = length2 > 0.0F ? std::clamp(to_centre.dot(along) / length2, 0.0F, 1.0F) : 0.0F;
+    return std::max(0.0F, area.circle.radius - (to_centre - share * along).norm());
+}
+
+/// What obstacles and closed areas at rest cost on the way back, out of their own sizes.
+Seconds dead_end_of(const world::Situation& s, const WayBack& way, std::uint32_t units, WorkBudget& budget) noexcept
+{
+    world::Situation fixed = s;
+    const auto blocked = [&] { return !budget.spend(units) || is_blocked(fixed, way, budget); };
+    fixed.threats = world::of_kind(s.threats, world::ThreatKind::obstacle);
+    Seconds most = !fixed.threats.empty() && blocked() ? kDeadEnd : 0.0F;
+    for (const world::Threat& area : world::of_kind(s.threats, world::ThreatKind::cylinder)) {
+        fixed.threats = {&area, 1};
+        if (area.velocity == Vec3::Zero() && blocked()) {
+            most = std::max(most, kDeadEnd + kSideStep * depth_of(way, *area.cylinder) / way.speed);
+        }
+    }
+    return most;
 }
 
 /// What obstacles cost on the way from `place`, where that is known.
@@ -106,15 +141,9 @@ ManoeuvreCost cost_of(const world::Situation& s, const world::Manoeuvre& manoeuv
         cost.rules = kAgainstRules;
     }
     const float ahead = std::min(place.arc_length + s.rules.lookahead * speed, length);
-    const auto leads_into_something = [&] {
-        world::Situation fixed = s;
-        fixed.threats = world::of_kind(s.threats, world::ThreatKind::obstacle);
-        return !fixed.threats.empty() &&
-               (!budget.spend(point_units) ||
-                is_blocked(fixed, flight.back().position, route.at(ahead).position, speed, budget));
-    };
     const std::optional<Seconds> lost = lost_from(s, flight.back().position, budget);
-    cost.dead_end = lost ? *lost : leads_into_something() ? kDeadEnd : 0.0F;
+    cost.dead_end =
+        lost ? *lost : dead_end_of(s, {flight.back().position, route.at(ahead).position, speed}, point_units, budget);
     return cost;
 }
 

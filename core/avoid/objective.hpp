@@ -20,9 +20,10 @@ struct ManoeuvreCost {
     Seconds clearance = 0.0F;    ///< the flight of what is missing to a margin of 1 m
     Seconds consistency = 0.0F;  ///< 1 for another method than the flown one's, and 6 for the other side
     Seconds rules = 0.0F;  ///< 6 where it passes a vehicle that avoids us too on the wrong side (passing_side.hpp)
-    /// What obstacles cost from the manoeuvre's end on (CostToGo). Where that is not known: 6 where an obstacle blocks
-    /// the straight way from there to the route, FlightRules::lookahead farther along than abeam of that end (at the
-    /// route's end at most). Unknown, as the budget has ended: blocked.
+    /// What obstacles cost from the manoeuvre's end on (CostToGo). Where that is not known: 6 where an obstacle or a
+    /// closed area at rest blocks the straight way from there to the route, FlightRules::lookahead farther along than
+    /// abeam of that end (at the route's end at most); of an area also the flight to its side and back at half the
+    /// speed, as deep as the way goes into its circle. Unknown, as the budget has ended: blocked.
     Seconds dead_end = 0.0F;
     Vec3 side = Vec3::Zero();  ///< unit vector from the route to the farthest point; zero within 0.3 m of the route
 
@@ -36,7 +37,7 @@ struct ManoeuvreCost {
 /// `separation`: its least one; it and `situation` are of the vehicle as it is. Exact but for rounding: within 1e-3 of
 /// each term and of 1 s for coordinates up to 1 km; a way within that of an obstacle may count as blocked or not.
 /// Without a route, and where the budget ends before all points are costed, the delay is infinite. O(points * segments
-/// of the route + obstacles).
+/// of the route + obstacles + closed areas).
 [[nodiscard]] ManoeuvreCost cost_of(const world::Situation& situation, const world::Manoeuvre& manoeuvre,
                                     std::span<const path::PathPoint> flight, const world::Separation& separation,
                                     WorkBudget& budget) noexcept;

@@ -44,6 +44,9 @@ Problem problem_of(const Situation& situation, const world::Way& way, const worl
     } else if (conflict.threat.kind == world::ThreatKind::obstacle) {
         problem.main_shape = main.solid->kind == geometry::ShapeKind::sphere ? nullptr : main.solid;
         problem.main_clearance = world::own_uncertainty(situation);
+    } else {
+        // A body that is large beside the distance to it is passed by the curves that are as long as that allows.
+        problem.body_radius = std::min(problem.main_radius, problem.distance / kMinDistanceInRadii);
     }
     detail::follow_route(situation, way, conflict, problem);
     return problem;

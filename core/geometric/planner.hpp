@@ -258,10 +258,11 @@ private:
 ///
 /// Memory: sizeof(Result), about kMaxCandidates * 100 bytes, and a Workspace. Reads the conflict with the leg out of
 /// the Situation (collision point = own position on the leg at the closest approach of the main threat, R = its grown
-/// radius then, at least kMinMainRadius; of a closed area its circle, at the own height), solves, and returns the chosen path as a follow_path manoeuvre. It begins
-/// with what the vehicle flies during FlightRules::latency, so that it is joined without a jump; threats are met where
-/// and as large as they are from then on. The start is not moved where that would bring the collision point nearer than
-/// kMinLeadRatio times that way or the 2.5 R, nor from inside a margin, nor with kMaxPathPoints waypoints.
+/// radius then, at least kMinMainRadius; of a closed area its circle, at the own height), solves, and returns the
+/// chosen path as a follow_path manoeuvre. It begins with what the vehicle flies during FlightRules::latency, so that
+/// it is joined without a jump; threats are met where and as large as they are from then on. The start is not moved
+/// where that would bring the collision point nearer than kMinLeadRatio times that way or the 2.5 R, nor from inside a
+/// margin, nor with kMaxPathPoints waypoints.
 ///
 /// When nothing is available it tries again as kAttempts says (source offsets: other speeds and ends only).
 class Planner {

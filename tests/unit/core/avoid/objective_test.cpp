@@ -185,9 +185,27 @@ TEST(DeadEnds, AreNoneForWhatMoves)
     f.scene.track(Vec3(40, 0, 32.5F), Vec3::Zero(), 3.0F);
     f.scene.cylinder(world::Vec2(50, 0), 5.0F);
     f.scene.cylinders[0].top = 100.0F;
+    f.scene.cylinders[0].velocity = world::Vec2(0.5F, 0);
     f.scene.airspace.has_ceiling = true;
     f.scene.airspace.ceiling = 32.0F;
     EXPECT_EQ(dead_end_of(f), 0.0F);
+}
+
+/// 6 s, and the way out of the circle and back at half the speed.
+TEST(DeadEnds, OfAClosedAreaGrowWithTheWayThroughItsCircle)
+{
+    const auto at = [](float aside, float radius) {
+        Flight f;
+        f.scene.cylinder(world::Vec2(40, aside), radius);
+        f.scene.cylinders[0].top = 100.0F;
+        return dead_end_of(f, Vec3(20, 0, 30));
+    };
+    const float speed = Flight{}.scene.reference.speed;
+    EXPECT_NEAR(at(0.0F, 5.0F), 6.0F + 4.0F * 5.0F / speed, 1e-3F);
+    EXPECT_NEAR(at(2.0F, 5.0F), 6.0F + 4.0F * 3.0F / speed, 1e-3F);
+    EXPECT_NEAR(at(-2.0F, 5.0F), 6.0F + 4.0F * 3.0F / speed, 1e-3F);
+    EXPECT_NEAR(at(5.5F, 5.0F), 6.0F, 1e-3F) << "the vehicle's own width alone";
+    EXPECT_EQ(at(8.0F, 5.0F), 0.0F);
 }
 
 /// Nothing behind the route's end counts, and from beyond it the way leads back.

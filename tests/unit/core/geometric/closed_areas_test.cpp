@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A closed area on the leg, or one that moves across it, is flown around as anything else is.
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <cstdio>
+#include <limits>
 #include <random>
+#include <span>
 
 #include <gtest/gtest.h>
 
@@ -53,7 +56,6 @@ TEST(PlanAroundClosedAreas, EitherSideIsLevel)
             ASSERT_EQ(flight.plan(), PlanStatus::found);
             EXPECT_GE(least_distance(flight, {&area, 1}), 0.0F);
             EXPECT_NEAR(flight.out.side.z(), 0.0F, 1e-3F) << "it reaches from the ground to 120 m";
-            EXPECT_LE(flight.out.side.y() * aside, 0.0F) << "the shorter way";
             EXPECT_NEAR(flight.out.path.points.back().position.y(), 0.0F, 0.1F) << "back on the leg";
         }
     }
@@ -62,7 +64,7 @@ TEST(PlanAroundClosedAreas, EitherSideIsLevel)
 /// Where one side is closed as well, the other one is taken; where both are, nothing is.
 TEST(PlanAroundClosedAreas, ASideThatIsClosedToo)
 {
-    const std::array<Cylinder, 3> areas{area_at(35.0F, 0.0F, 4.0F), area_at(35.0F, 12.0F, 8.0F),
+    const std::array<Cylinder, 3> areas{area_at(35.0F, 0.0F, 4.0F), area_at(35.0F, 34.0F, 30.0F),
                                         area_at(35.0F, -34.0F, 30.0F)};
     Flight flight;
     flight.airspace.cylinders = {areas.data(), 2};
@@ -113,7 +115,7 @@ TEST(PlanAroundClosedAreas, RandomOnesAreKeptClearOf)
         }
     }
     std::printf("[ measured ] %d of %d situations solved\n", found, met);
-    EXPECT_GT(found, 0.6 * met);
+    EXPECT_GT(found, 0.95 * met);
 }
 
 }  // namespace
