@@ -16,7 +16,7 @@ import stack  # noqa: E402
 
 # With reach sets and reciprocal avoidance; the memory report has their limits and the limit of the rest
 # (toolchain/report/memory_sizes.py).
-MOST_FLASH = 690 * 1024
+MOST_FLASH = 691 * 1024
 STORE_IN_FLASH = {"stm32h743": 8 * 1024}  # parameters, on top of what mps2_an500 has; stm32f405 has smaller reach sets
 MOST_STATIC_RAM = 112 * 1024
 MOST_COUPLED = 64 * 1024

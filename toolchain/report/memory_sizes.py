@@ -21,10 +21,10 @@ PREFIX = {"mps2_an500": "arm-none-eabi-", "stm32f405": "arm-none-eabi-", "armhf"
 # are plans in slices: snapshot, fiber, and the work units of a slice, 4 KiB are the objective and its comparison, and
 # 10 KiB are what keeps well clear of aircraft, 4 KiB the stop of all that avoid each other, 4 KiB the flight log over MAVLink
 # with the names and formats of its topics, and 2 KiB answers that end before something static, the bound of a box by its
-# own axes, and how deep the vehicle is in one. The M7's 2 KiB more of all flash are scans of two sensors in a step, the
+# own axes, and how deep the vehicle is in one. The M7's 3 KiB more of all flash are scans of two sensors in a step, the
 # directions of ranges, and the check of a way back that a bound bends; the rest's 1 KiB is the latency of ranges and
-# repeated traffic reports.
-LIMITS = {"flash": 690 * 1024, "flash of the rest": 369 * 1024, "tables of the reach sets": 256 * 1024, "code of reciprocal avoidance": 80 * 1024,
+# repeated traffic reports, and the dead end before a closed area.
+LIMITS = {"flash": 691 * 1024, "flash of the rest": 369 * 1024, "tables of the reach sets": 256 * 1024, "code of reciprocal avoidance": 80 * 1024,
           "static RAM with its stack": 112 * 1024, "static RAM of the rest": 82 * 1024, "reach planner": 32 * 1024, "reciprocal planner": 16 * 1024,
           "stack": 12 * 1024, "plan stack": 8 * 1024, "core-coupled": 64 * 1024}
 REACH_TABLES = re.compile(r"jink::reach::(setsOf\w+::|k\w+Sets)")
