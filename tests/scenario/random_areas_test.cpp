@@ -3,6 +3,7 @@
 // nothing is entered, and every mission is finished. JINK_CASES flights (24).
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -43,6 +44,16 @@ std::string random_scenario(int i)
     return out.str();
 }
 
+/// About the beginning, or at some time about the goal, where the vehicle then stands.
+bool lies_about_an_end(const ClosedArea& area)
+{
+    double least = surface_distance(area, 0.0, Vec(0, 0, 30));
+    for (double t = 45.0; t < 150.0; t += 1.0) {
+        least = std::min(least, surface_distance(area, t, Vec(260, 0, 30)));
+    }
+    return least < 30.0;
+}
+
 TEST(RandomClosedAreas, AreNotEnteredAndTheMissionIsFinished)
 {
     const char* const given = std::getenv("JINK_CASES");
@@ -51,10 +62,8 @@ TEST(RandomClosedAreas, AreNotEnteredAndTheMissionIsFinished)
     int braked = 0;
     for (int i = 0; flown < cases; ++i) {
         const Scenario scenario = parse_scenario(random_scenario(i), "random.yaml");
-        const double begins = surface_distance(scenario.areas[0], 0.0, Vec(0, 0, 30));
-        const double ends = surface_distance(scenario.areas[0], 52.0, Vec(260, 0, 30));
-        if (begins < 30.0 || ends < 30.0) {
-            continue;  // it lies about the beginning, or about the goal when the vehicle comes
+        if (lies_about_an_end(scenario.areas[0])) {
+            continue;
         }
         ++flown;
         const Record record = fly_in_process(scenario);
