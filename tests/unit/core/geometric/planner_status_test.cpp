@@ -51,18 +51,23 @@ world::Cylinder closed_area_ahead()
     return area;
 }
 
-/// Its curves reach a few radii to the side.
-TEST(PlannerStatus, AClosedAreaThatIsTooLargeIsTooClose)
+/// Curves are as long as the distance to the area allows: one that reaches nearly up to the vehicle has no way round
+/// it.
+TEST(PlannerStatus, AClosedAreaThatIsTooLargeHasNoWayRoundIt)
 {
+    for (const float radius : {2.0F, 8.0F, 13.0F}) {
+        Flight flight;
+        world::Cylinder area = closed_area_ahead();
+        area.circle.radius = radius;
+        flight.airspace.cylinders = {&area, 1};
+        EXPECT_EQ(flight.plan(), PlanStatus::found) << radius;
+    }
     Flight flight;
     world::Cylinder area = closed_area_ahead();
+    area.circle.radius = 28.0F;
     flight.airspace.cylinders = {&area, 1};
-    EXPECT_EQ(flight.plan(), PlanStatus::found);
-    Flight before_a_large_one;
-    area.circle.radius = 13.0F;
-    before_a_large_one.airspace.cylinders = {&area, 1};
-    EXPECT_EQ(before_a_large_one.plan(), PlanStatus::too_close);
-    EXPECT_TRUE(before_a_large_one.out.path.points.empty());
+    EXPECT_EQ(flight.plan(), PlanStatus::none_available);
+    EXPECT_TRUE(flight.out.path.points.empty());
 }
 
 TEST(PlannerStatus, BudgetSpentAtAClosedAreaIsSaid)
