@@ -294,6 +294,7 @@ TrackStatus TrackTable::update(const TrackMeasurement& m, const vehicle::Vehicle
     TrackStatus status = admit(m, own, now);
     if (status == TrackStatus::updated) {
         const Match found = match(m, own, now);
+        // NOLINTNEXTLINE(bugprone-branch-clone): in this order, a repetition starts no track
         if (found.repeated) {
             status = TrackStatus::stale;
         } else if (found.best == kNone) {
