@@ -4,26 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include "firmware/app/clouds.hpp"
+#include "tests/unit/app/shown_world.hpp"
 #include "tests/unit/app/step_bench.hpp"
 
 namespace jink::app::test {
 namespace {
-
-struct ShownTable final : Clouds {
-    void give_to(world::ObstacleTable& given) noexcept override { table = &given; }
-    link::CloudSink& link_points() noexcept override { return sink; }
-    void forward_to(link::CloudSink& /*sink*/) noexcept override {}
-    void serve(TimePoint /*now*/, const CloudView& shown) noexcept override { floor = shown.floor; }
-
-    struct Nowhere final : link::CloudSink {
-        void begin_scan(const link::CloudScan& /*scan*/) noexcept override {}
-        void add(link::Ray /*ray*/, const Vec3& /*point*/) noexcept override {}
-        void end_scan(std::uint32_t /*points_lost*/) noexcept override {}
-    } sink;
-    world::ObstacleTable* table = nullptr;
-    float floor = 0.0F;
-};
 
 /// At 10 m/s along x, at x = 0 when the report arrives; own states come in each step, stamped `own_age` before.
 class StepRangeAge : public testing::TestWithParam<std::pair<Seconds, Seconds>> {
@@ -56,7 +41,7 @@ protected:
 
     static constexpr float kSpeed = 10.0F;
     static constexpr float kRange = 20.0F;
-    ShownTable shown;
+    ShownWorld shown;
     StepBench bench{{Param::scan_latency, latency()}, {Param::floor, 3.0F}, {Param::bounds, 1.0F}};
 };
 
@@ -99,7 +84,7 @@ TEST_P(StepRangeAge, TheGroundUnderAVehicleThatSinks)
     down.range = 12.0F;
     bench.wire.in.readings.unchecked_push_back(down);
     bench.step();
-    EXPECT_NEAR(shown.floor, 30.0F + 2.0F * latency() - 12.0F + 3.0F, 1e-3F);
+    EXPECT_NEAR(shown.view.floor, 30.0F + 2.0F * latency() - 12.0F + 3.0F, 1e-3F);
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, StepRangeAge,

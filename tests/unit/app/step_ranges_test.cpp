@@ -6,31 +6,15 @@
 
 #include <gtest/gtest.h>
 
-#include "firmware/app/clouds.hpp"
 #include "firmware/app/near_field.hpp"
 #include "firmware/app/range_return.hpp"
+#include "tests/unit/app/shown_world.hpp"
 #include "tests/unit/app/step_bench.hpp"
 
 namespace jink::app::test {
 namespace {
 
 using link::RangeScan;
-
-/// Receives the obstacle table and the co-processor's own state.
-struct ShownWorld final : Clouds {
-    void give_to(world::ObstacleTable& given) noexcept override { table = &given; }
-    link::CloudSink& link_points() noexcept override { return sink; }
-    void forward_to(link::CloudSink& /*sink*/) noexcept override {}
-    void serve(TimePoint /*now*/, const CloudView& shown) noexcept override { view = shown; }
-
-    struct Nowhere final : link::CloudSink {
-        void begin_scan(const link::CloudScan& /*scan*/) noexcept override {}
-        void add(link::Ray /*ray*/, const Vec3& /*point*/) noexcept override {}
-        void end_scan(std::uint32_t /*points_lost*/) noexcept override {}
-    } sink;
-    world::ObstacleTable* table = nullptr;
-    CloudView view;
-};
 
 class StepRanges : public testing::Test {
 protected:
