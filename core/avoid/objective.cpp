@@ -25,6 +25,8 @@ constexpr Seconds kSideChange = 6.0F;     ///< for a change of the side
 constexpr Seconds kAgainstRules = 6.0F;   ///< for the side on which two vehicles do not pass
 constexpr Seconds kDeadEnd = 6.0F;        ///< for what is on the straight way back to the route
 constexpr float kSideStep = 4.0F;         ///< to a closed area's side and back, at half the speed as from a stand
+constexpr Seconds kSoft = 6.0F;           ///< for a way into a closed area's soft margin
+constexpr float kSoftDepth = 10.0F;       ///< and so many times the flight of its depth
 constexpr Seconds kShortestWay = 1e-3F;   ///< such a way takes no less
 constexpr float kOppositeCosine = -0.1F;  ///< sides further apart than this (cosine) are opposite ones
 
@@ -61,14 +63,25 @@ bool is_blocked(const world::Situation& s, const WayBack& way, WorkBudget& budge
     return world::least_separation(s, points, duration, budget, s.rules.escape, kClearOrNot).margin < 0.0F;
 }
 
-/// How far the way goes into a closed area's circle, seen from above [m], >= 0.
-float depth_of(const WayBack& way, const world::Cylinder& area) noexcept
+/// How far a straight flight goes into a circle of `radius` about the origin [m], >= 0.
+float depth_of(const world::Vec2& from, const world::Vec2& to, float radius) noexcept
 {
-    const world::Vec2 along = (way.to - way.from).head<2>();
-    const world::Vec2 to_centre = area.circle.centre - way.from.head<2>();
+    const world::Vec2 along = to - from;
     const float length2 = along.squaredNorm();
-    const float share = length2 > 0.0F ? std::clamp(to_centre.dot(along) / length2, 0.0F, 1.0F) : 0.0F;
-    return std::max(0.0F, area.circle.radius - (to_centre - share * along).norm());
+    const float share = length2 > 0.0F ? std::clamp(-from.dot(along) / length2, 0.0F, 1.0F) : 0.0F;
+    return std::max(0.0F, radius - (from + share * along).norm());
+}
+
+/// How far a piece of a flight that began at `start` goes into the soft margin of an area [m], at most all of it.
+float soft_depth(const path::PathPoint& from, const path::PathPoint& to, Seconds start,
+                 const world::Cylinder& area) noexcept
+{
+    const bool passes = std::max(from.position.z(), to.position.z()) < area.bottom ||
+                        std::min(from.position.z(), to.position.z()) > area.top;
+    const auto beside = [&](const path::PathPoint& point) -> world::Vec2 {
+        return point.position.head<2>() - area.circle.centre - area.velocity * (point.time - start);
+    };
+    return passes ? 0.0F : std::min(area.margin, depth_of(beside(from), beside(to), area.circle.radius + area.margin));
 }
 
 /// What obstacles and closed areas at rest cost on the way back, out of their own sizes.
@@ -81,7 +94,10 @@ Seconds dead_end_of(const world::Situation& s, const WayBack& way, std::uint32_t
     for (const world::Threat& area : world::of_kind(s.threats, world::ThreatKind::cylinder)) {
         fixed.threats = {&area, 1};
         if (area.velocity == Vec3::Zero() && blocked()) {
-            most = std::max(most, kDeadEnd + kSideStep * depth_of(way, *area.cylinder) / way.speed);
+            const world::Circle& circle = area.cylinder->circle;
+            const float depth =
+                depth_of(way.from.head<2>() - circle.centre, way.to.head<2>() - circle.centre, circle.radius);
+            most = std::max(most, kDeadEnd + kSideStep * depth / way.speed);
         }
     }
     return most;
@@ -105,16 +121,20 @@ ManoeuvreCost cost_of(const world::Situation& s, const world::Manoeuvre& manoeuv
     for (const path::RouteSegment& segment : route.segments()) {
         point_units += segment.is_arc() ? units::kObjectiveArc : units::kObjectivePoint;
     }
+    const std::span areas = world::of_kind(s.threats, world::ThreatKind::cylinder);
+    const std::uint32_t soft_units = static_cast<std::uint32_t>(areas.size()) * units::kObjectivePoint;
     bool paid = s.reference.valid && budget.spend(units::kObjective);
     const float speed = std::max(kMinSpeed, s.reference.speed);
     const float length = route.length();
     Vec3 farthest = Vec3::Zero();
     Vec3 velocity = s.own.velocity;
     float changes = 0.0F;
+    float soft = 0.0F;
+    const path::PathPoint* before = flight.data();
     Place first;
     Place place;
     for (const path::PathPoint& point : flight) {
-        paid = paid && budget.spend(point_units);
+        paid = paid && budget.spend(point_units + soft_units);
         if (!paid) {
             cost.delay = std::numeric_limits<float>::infinity();
             return cost;
@@ -124,13 +144,18 @@ ManoeuvreCost cost_of(const world::Situation& s, const world::Manoeuvre& manoeuv
         changes += (point.velocity - velocity).norm();
         velocity = point.velocity;
         first = &point == flight.data() ? place : first;
+        for (const world::Threat& area : areas) {
+            soft = std::max(soft, soft_depth(*before, point, flight.front().time, *area.cylinder));
+        }
+        before = &point;
     }
     cost.delay = flight.back().time - flight.front().time + (place.left - first.left) / speed;
     const float most = farthest.norm();
     cost.side = most > kMinSide ? Vec3(farthest / most) : cost.side;
     cost.deviation = kDeviation * most / speed;
     cost.effort = changes / s.limits.max_acceleration;
-    cost.clearance = std::max(0.0F, kWantedMargin - separation.margin) / speed;
+    cost.clearance =
+        (std::max(0.0F, kWantedMargin - separation.margin) + kSoftDepth * soft) / speed + (soft > 0.0F ? kSoft : 0.0F);
     if (s.flying != nullptr) {
         cost.consistency = (s.flying->by != manoeuvre.by ? kMethodChange : 0.0F) +
                            (are_opposite(s.flying->side, cost.side) ? kSideChange : 0.0F);

@@ -15,9 +15,11 @@ struct ManoeuvreCost {
     /// Later at the end of the route than by the route itself. From the manoeuvre's end on the vehicle goes on along
     /// the route at the reference's speed, and takes half as long for the way back to it.
     Seconds delay = 0.0F;
-    Seconds deviation = 0.0F;    ///< a fifth of the flight of the greatest distance from the route
-    Seconds effort = 0.0F;       ///< all changes of velocity, at the greatest level acceleration
-    Seconds clearance = 0.0F;    ///< the flight of what is missing to a margin of 1 m
+    Seconds deviation = 0.0F;  ///< a fifth of the flight of the greatest distance from the route
+    Seconds effort = 0.0F;     ///< all changes of velocity, at the greatest level acceleration
+    /// The flight of what is missing to a margin of 1 m; where the soft margin of a closed area is entered, 6 more and
+    /// ten times the flight of the depth.
+    Seconds clearance = 0.0F;
     Seconds consistency = 0.0F;  ///< 1 for another method than the flown one's, and 6 for the other side
     Seconds rules = 0.0F;  ///< 6 where it passes a vehicle that avoids us too on the wrong side (passing_side.hpp)
     /// What obstacles cost from the manoeuvre's end on (CostToGo). Where that is not known: 6 where an obstacle or a
@@ -37,7 +39,7 @@ struct ManoeuvreCost {
 /// `separation`: its least one; it and `situation` are of the vehicle as it is. Exact but for rounding: within 1e-3 of
 /// each term and of 1 s for coordinates up to 1 km; a way within that of an obstacle may count as blocked or not.
 /// Without a route, and where the budget ends before all points are costed, the delay is infinite. O(points * segments
-/// of the route + obstacles + closed areas).
+/// of the route + points * closed areas + obstacles).
 [[nodiscard]] ManoeuvreCost cost_of(const world::Situation& situation, const world::Manoeuvre& manoeuvre,
                                     std::span<const path::PathPoint> flight, const world::Separation& separation,
                                     WorkBudget& budget) noexcept;

@@ -141,6 +141,7 @@ private:
     void add_tracks(const Extent& reach, Seconds longest, Which which) noexcept;
     void add_obstacles(const Extent& reach, Seconds longest, bool moving, WorkBudget& budget) noexcept;
     void add_cylinders(const Extent& reach, Seconds longest) noexcept;
+    [[nodiscard]] world::Cylinder kept_clear_of(const world::Threat& threat) const noexcept;
     void add_solid(const world::Threat& threat, WorkBudget& budget) noexcept;
     [[nodiscard]] Solid solid_of(const world::Threat& threat, float shrunk) const noexcept;
     [[nodiscard]] Sphere sphere_about(const world::Threat& solid) const noexcept;

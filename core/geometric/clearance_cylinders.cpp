@@ -6,12 +6,20 @@
 
 namespace jink::geometric::detail {
 
+/// As wide as it is kept clear of.
+world::Cylinder Clearance::kept_clear_of(const world::Threat& threat) const noexcept
+{
+    world::Cylinder body = *threat.cylinder;
+    body.circle.radius += problem_.keeps_soft_margins ? body.margin : 0.0F;
+    return body;
+}
+
 void Clearance::add_cylinders(const Extent& reach, Seconds longest) noexcept
 {
     const Seconds start = problem_.lead + problem_.begins;
     for (const world::Threat& threat : cylinders_) {
         if (!is_cylinder_out_of(reach, threat, 0.0F, longest)) {
-            const float margin = world::cylinder_distance(half_, problem_.frame.origin, *threat.cylinder, start) -
+            const float margin = world::cylinder_distance(half_, problem_.frame.origin, kept_clear_of(threat), start) -
                                  at_start(problem_, threat).growth.radius;
             items_.unchecked_push_back({index_of(threat), shrink_to_clear(margin)});
         }
@@ -22,7 +30,7 @@ void Clearance::add_cylinders(const Extent& reach, Seconds longest) noexcept
 bool Clearance::is_cylinder_out_of(const Extent& extent, const world::Threat& threat, Seconds from,
                                    Seconds until) const noexcept
 {
-    const world::Cylinder& body = *threat.cylinder;
+    const world::Cylinder body = kept_clear_of(threat);
     const Vec3& origin = problem_.frame.origin;
     const auto corner = [&](Seconds t, float height, float side) -> Vec3 {
         const world::Vec2 level = body.circle.centre + body.velocity * (problem_.lead + problem_.begins + t);
@@ -40,13 +48,14 @@ bool Clearance::touches_cylinder(const Curve& curve, std::size_t i, const world:
     const Seconds duration = curve.t[i + 1] - curve.t[i];
     const Vec3 velocity =
         duration > 0.0F ? Vec3((curve.position(i + 1) - curve.position(i)) / duration) : Vec3(Vec3::Zero());
+    const world::Cylinder body = kept_clear_of(threat);
     const int parts = shrink_at(shrunk, curve.t[i]) > 0.0F ? escape_parts(duration) : 1;
     const Seconds span = duration / static_cast<float>(parts);
     for (int part = 0; part < parts; ++part) {
         const Seconds from = span * static_cast<float>(part);
         const float outset = threat.growth.radius - shrink_at(shrunk, curve.t[i] + from + span);
         const world::detail::CylinderApproach approach(
-            half_, {problem_.frame.origin + curve.position(i) + from * velocity, velocity}, *threat.cylinder,
+            half_, {problem_.frame.origin + curve.position(i) + from * velocity, velocity}, body,
             problem_.lead + problem_.begins + curve.t[i] + from, outset, 0.0F);
         if (!(approach.least(span, 0.0F, budget).distance >= 0.0F)) {
             return true;

@@ -21,8 +21,6 @@ constexpr int kFirstParts = 2;
 /// No candidate on the other side is more expensive than one on this side by that.
 constexpr float kOtherSide = 10.0F;
 
-/// A share of all there is, so that rounding takes nothing over the limit.
-constexpr float kWithin = 0.99F;
 /// Radius of the main threat where none is met [m].
 constexpr float kNothingMet = 0.01F;
 
@@ -125,7 +123,7 @@ bool second_part(const Problem& problem, const Beginning& first, const vehicle::
         out.main_centre_offset =
             met.motion.position + when * met.motion.velocity - (out.frame.origin + when * velocity);
         // So near to the main threat the next one often is nearer than the 2.5 R; whether a curve clears it is checked.
-        out.body_radius = std::min(out.main_radius, kWithin * out.distance / kMinDistanceInRadii);
+        out.body_radius = std::min(out.main_radius, largest_radius(out.distance));
         out.apex_share = out.distance > 0.0F ? 0.5F * way.norm() / out.distance : 0.0F;
         const float reach = 4.0F * out.distance * out.distance - aside * aside;
         back = reach > 0.0F ? std::max(std::sqrt(reach), 0.5F * top) : top;

@@ -19,13 +19,26 @@ using world::Situation;
 
 static_assert(world::AvoidanceMethod<Planner>);
 
-Problem problem_of(const Situation& situation, const world::Way& way, const world::Conflict& conflict) noexcept
+const world::Threat& main_threat(const Situation& situation, const world::Conflict& conflict) noexcept
 {
-    const world::Threat& main = world::of_kind(situation.threats, conflict.threat.kind)[conflict.threat.index];
+    return world::of_kind(situation.threats, conflict.threat.kind)[conflict.threat.index];
+}
+
+/// How far the vehicle goes until it answers, 0 where the start is not moved there.
+Vec3 way_until_answer(const Situation& situation, const Settings& settings) noexcept
+{
+    return situation.own.velocity * (settings.starts_after_latency ? situation.rules.latency : 0.0F);
+}
+
+Problem problem_of(const Situation& situation, const world::Way& way, const world::Conflict& conflict,
+                   bool keeps_soft_margins, const Settings& settings) noexcept
+{
+    const world::Threat& main = main_threat(situation, conflict);
     Problem problem;
     problem.frame = make_path_frame(way.origin, way.direction);
     problem.distance = (conflict.own_at_closest - way.origin).norm();
     problem.main_radius = std::max(conflict.radius_at_closest, Planner::kMinMainRadius);
+    problem.keeps_soft_margins = keeps_soft_margins;
     if (conflict.threat.kind == world::ThreatKind::track) {
         problem.body_radius = std::max(main.track->radius, Planner::kMinMainRadius);
     }
@@ -45,8 +58,10 @@ Problem problem_of(const Situation& situation, const world::Way& way, const worl
         problem.main_shape = main.solid->kind == geometry::ShapeKind::sphere ? nullptr : main.solid;
         problem.main_clearance = world::own_uncertainty(situation);
     } else {
+        problem.main_radius += keeps_soft_margins ? main.cylinder->margin : 0.0F;
         // A body that is large beside the distance to it is passed by the curves that are as long as that allows.
-        problem.body_radius = std::min(problem.main_radius, problem.distance / kMinDistanceInRadii);
+        const float left = problem.distance - way_until_answer(situation, settings).norm();
+        problem.body_radius = std::clamp(largest_radius(left), Planner::kMinMainRadius, problem.main_radius);
     }
     detail::follow_route(situation, way, conflict, problem);
     return problem;
@@ -73,8 +88,8 @@ bool find_conflict(const Situation& situation, Seconds lookahead, WorkBudget& bu
 Seconds move_start(const Situation& situation, const Vec3& collision_point, const Settings& settings, Problem& problem,
                    WorkBudget& budget) noexcept
 {
-    const Seconds latency = settings.starts_after_latency ? situation.rules.latency : 0.0F;
-    const Vec3 way = problem.start_velocity * latency;
+    const Seconds latency = situation.rules.latency;
+    const Vec3 way = way_until_answer(situation, settings);
     const Vec3 left = collision_point - problem.frame.origin - way;
     const float least = std::max(Planner::kMinLeadRatio * way.norm(), kMinDistanceInRadii * scale_radius(problem));
     if (!(way.squaredNorm() > 0.0F) || left.norm() < least || settings.waypoints >= kMaxPathPoints) {
@@ -204,14 +219,24 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     if (!found) {
         return PlanStatus::no_conflict;
     }
-    Problem problem = problem_of(situation, way, conflict);
-    if (problem.distance < kMinDistanceInRadii * scale_radius(problem)) {
-        return PlanStatus::too_close;
+    const std::span areas = world::of_kind(situation.threats, world::ThreatKind::cylinder);
+    const bool soft =
+        std::any_of(areas.begin(), areas.end(), [](const auto& area) { return area.cylinder->margin > 0.0F; });
+    Problem problem;
+    PlanStatus status = PlanStatus::none_available;
+    for (const bool keeps_soft_margins : {soft, false}) {
+        problem = problem_of(situation, way, conflict, keeps_soft_margins, settings_);
+        if (problem.distance < kMinDistanceInRadii * scale_radius(problem)) {
+            return PlanStatus::too_close;
+        }
+        problem.lead = move_start(situation, conflict.own_at_closest, settings_, problem, budget);
+        std::size_t attempts = 0;
+        status = solve_with_retries(problem, settings_, situation.limits, situation.airframe, budget, workspace_,
+                                    result_, attempts);
+        if (status == PlanStatus::found || !keeps_soft_margins || budget.exhausted()) {
+            break;
+        }
     }
-    problem.lead = move_start(situation, conflict.own_at_closest, settings_, problem, budget);
-    std::size_t attempts = 0;
-    const PlanStatus status = solve_with_retries(problem, settings_, situation.limits, situation.airframe, budget,
-                                                 workspace_, result_, attempts);
     if (status != PlanStatus::found) {
         return status;
     }

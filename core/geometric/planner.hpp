@@ -28,6 +28,8 @@ enum class OffsetRule : std::uint8_t { clearing, source };
 inline constexpr float kRejoinOvershoot = 0.5F;
 /// Nearest distance to the main threat that is planned for, in its radii (Pinheiro 3.1.1).
 inline constexpr float kMinDistanceInRadii = 2.5F;
+/// Radius that is planned for at a distance from a threat, without what rounding may take over the limit [m].
+[[nodiscard]] constexpr float largest_radius(float distance) noexcept { return 0.99F * distance / kMinDistanceInRadii; }
 /// One go at a problem: which candidates, at a share of the leg's speed, over which part of the span of clearing
 /// offsets.
 struct Attempt {
@@ -160,6 +162,7 @@ struct Problem {
     /// kMaxObstacles obstacles, kMaxMovingSolids of which move. Moving solids, time-aware: checked exactly, in their
     /// own frame; swept: as their bounding spheres. Cylinders are checked where they are, when, in either mode.
     std::span<const world::Threat> threats;
+    bool keeps_soft_margins = false;         ///< cylinders are as wide as with their soft margins
     world::FlightRules rules;                ///< escape rule, and gains for Settings::verify_flight
     Vec3 start_velocity = Vec3::Zero();      ///< own velocity at the start, for verify_flight [m/s]
     float speed = 5.0F;                      ///< cruise speed along the candidates [m/s]
@@ -259,10 +262,11 @@ private:
 /// Memory: sizeof(Result), about kMaxCandidates * 100 bytes, and a Workspace. Reads the conflict with the leg out of
 /// the Situation (collision point = own position on the leg at the closest approach of the main threat, R = its grown
 /// radius then, at least kMinMainRadius; of a closed area its circle, at the own height), solves, and returns the
-/// chosen path as a follow_path manoeuvre. It begins with what the vehicle flies during FlightRules::latency, so that
-/// it is joined without a jump; threats are met where and as large as they are from then on. The start is not moved
-/// where that would bring the collision point nearer than kMinLeadRatio times that way or the 2.5 R, nor from inside a
-/// margin, nor with kMaxPathPoints waypoints.
+/// chosen path as a follow_path manoeuvre. Closed areas count with their soft margins first, and without them where
+/// nothing is available so. It begins
+/// with what the vehicle flies during FlightRules::latency, so that it is joined without a jump; threats are met where
+/// and as large as they are from then on. The start is not moved where that would bring the collision point nearer than
+/// kMinLeadRatio times that way or the 2.5 R, nor from inside a margin, nor with kMaxPathPoints waypoints.
 ///
 /// When nothing is available it tries again as kAttempts says (source offsets: other speeds and ends only).
 class Planner {

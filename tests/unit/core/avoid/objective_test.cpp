@@ -71,6 +71,29 @@ TEST(Objective, EachTermIsWhatItSays)
     EXPECT_EQ(cost(f, aside, apart(30.0F)).clearance, 0.0F);
 }
 
+/// 6 s, and ten times the flight of the depth, at the deepest place.
+TEST(Objective, ASoftMarginCostsTheWayIntoIt)
+{
+    const auto beside = flight({{0, 0, 30}, {10, 3, 30}, {30, 3, 30}, {40, 0, 30}}, 2.0F);
+    const auto clearance_of = [&](float y, float top, const world::Vec2& velocity = {0, 0}) {
+        Flight f;
+        f.scene.cylinder(world::Vec2(20, y), 5.0F);
+        f.scene.cylinders[0].margin = 4.0F;
+        f.scene.cylinders[0].top = top;
+        f.scene.cylinders[0].velocity = velocity;
+        f.scene.cylinder(world::Vec2(20, 200), 5.0F);
+        return cost(f, beside, apart(1.0F)).clearance;
+    };
+    EXPECT_EQ(clearance_of(-6.1F, 100.0F), 0.0F) << "9.1 m from the flight";
+    EXPECT_NEAR(clearance_of(-5.0F, 100.0F), 6.0F + 10.0F * 1.0F / 5.0F, kExact) << "between two points";
+    EXPECT_NEAR(clearance_of(9.0F, 100.0F), 6.0F + 10.0F * 3.0F / 5.0F, kExact);
+    EXPECT_NEAR(clearance_of(4.0F, 100.0F), 6.0F + 10.0F * 4.0F / 5.0F, kExact) << "into the body: the check's matter";
+    EXPECT_EQ(clearance_of(-5.0F, 29.0F), 0.0F) << "above it";
+    // Abeam of it after 3 s: 6 m farther away by then.
+    EXPECT_EQ(clearance_of(-5.0F, 100.0F, {0, -2}), 0.0F);
+    EXPECT_NEAR(clearance_of(-11.0F, 100.0F, {0, 2}), 6.0F + 10.0F * 1.0F / 5.0F, 0.5F);
+}
+
 TEST(Objective, HoldsOnToTheMethodAndTheSide)
 {
     Flight f;

@@ -77,6 +77,33 @@ TEST(PlanAroundClosedAreas, ASideThatIsClosedToo)
 }
 
 /// One that ends below the leg is passed over as well as beside.
+TEST(PlanAroundClosedAreas, TheSoftMarginIsKeptOffToo)
+{
+    for (const float radius : {1.0F, 4.0F, 10.0F}) {
+        for (const float margin : {1.0F, 4.0F, 8.0F}) {
+            SCOPED_TRACE(testing::Message() << radius << " m, soft for " << margin << " m");
+            Flight flight;
+            Cylinder area = area_at(35.0F, 0.3F * radius, radius);
+            area.margin = margin;
+            flight.airspace.cylinders = {&area, 1};
+            ASSERT_EQ(flight.plan(), PlanStatus::found);
+            area.circle.radius += margin;
+            EXPECT_GE(least_distance(flight, {&area, 1}), 0.0F);
+        }
+    }
+}
+
+TEST(PlanAroundClosedAreas, TheSoftMarginIsEnteredWhereNothingElseIsLeft)
+{
+    std::array<Cylinder, 3> areas{area_at(35.0F, 0.0F, 4.0F), area_at(35.0F, 36.0F, 24.0F),
+                                  area_at(35.0F, -36.0F, 24.0F)};
+    areas[0].margin = 12.0F;
+    Flight flight;
+    flight.airspace.cylinders = areas;
+    ASSERT_EQ(flight.plan(), PlanStatus::found);
+    EXPECT_GE(least_distance(flight, areas), 0.0F);
+}
+
 TEST(PlanAroundClosedAreas, ALowOneIsNoConflictAndOneThatJustReachesTheLegIsOne)
 {
     Flight flight;
