@@ -14,14 +14,13 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "toolchain"
 import memory_sizes  # noqa: E402
 import stack  # noqa: E402
 
-# With reach sets and reciprocal avoidance; the memory report has their limits and the limit of the rest
-# (toolchain/report/memory_sizes.py).
-MOST_FLASH = 691 * 1024
+# With reach sets and reciprocal avoidance; the memory report has their limits and the limit of the rest as well.
+MOST_FLASH = memory_sizes.LIMITS["flash"]
 STORE_IN_FLASH = {"stm32h743": 8 * 1024}  # parameters, on top of what mps2_an500 has; stm32f405 has smaller reach sets
-MOST_STATIC_RAM = 112 * 1024
-MOST_COUPLED = 64 * 1024
-MOST_STACK = 12 * 1024
-PLAN_STACK = 8 * 1024  # app::PlanMemory
+MOST_STATIC_RAM = memory_sizes.LIMITS["static RAM with its stack"]
+MOST_COUPLED = memory_sizes.LIMITS["core-coupled"]
+MOST_STACK = memory_sizes.LIMITS["stack"]
+PLAN_STACK = memory_sizes.LIMITS["plan stack"]  # app::PlanMemory
 ALLOCATORS = re.compile(r"\b(malloc|calloc|realloc|free|_sbrk|sbrk|_malloc_r|_free_r|operator new|operator delete)\b")
 
 

@@ -16,7 +16,8 @@ import targets
 IMAGES = ["mps2_an500", "stm32f405"]
 PREFIX = {"mps2_an500": "arm-none-eabi-", "stm32f405": "arm-none-eabi-", "armhf": "arm-linux-gnueabihf-", "aarch64": "aarch64-linux-gnu-"}
 # Reach sets and reciprocal avoidance have their own limits, in addition to the rest of the image. Of the rest, 8 KiB of
-# the RAM are the threat set and 2 KiB the answer that is compared with the best so far; of the flash, 2 KiB are closed areas among the candidates of the geometric method, 8 KiB are
+# the RAM are the threat set and 2 KiB the answer that is compared with the best so far; of the flash, 4 KiB are closed areas
+# and their soft margins among the candidates of the geometric method and in the objective, 8 KiB are
 # functions that the compiler inlines across the files of a folder (jink_joined: fewer instructions for more flash), 6 KiB
 # are plans in slices: snapshot, fiber, and the work units of a slice, 4 KiB are the objective and its comparison, and
 # 10 KiB are what keeps well clear of aircraft, 4 KiB the stop of all that avoid each other, 4 KiB the flight log over MAVLink
@@ -24,7 +25,7 @@ PREFIX = {"mps2_an500": "arm-none-eabi-", "stm32f405": "arm-none-eabi-", "armhf"
 # own axes, and how deep the vehicle is in one. The M7's 3 KiB more of all flash are scans of two sensors in a step, the
 # directions of ranges, and the check of a way back that a bound bends; the rest's 1 KiB is the latency of ranges and
 # repeated traffic reports, and the dead end before a closed area.
-LIMITS = {"flash": 691 * 1024, "flash of the rest": 369 * 1024, "tables of the reach sets": 256 * 1024, "code of reciprocal avoidance": 80 * 1024,
+LIMITS = {"flash": 693 * 1024, "flash of the rest": 371 * 1024, "tables of the reach sets": 256 * 1024, "code of reciprocal avoidance": 80 * 1024,
           "static RAM with its stack": 112 * 1024, "static RAM of the rest": 82 * 1024, "reach planner": 32 * 1024, "reciprocal planner": 16 * 1024,
           "stack": 12 * 1024, "plan stack": 8 * 1024, "core-coupled": 64 * 1024}
 REACH_TABLES = re.compile(r"jink::reach::(setsOf\w+::|k\w+Sets)")
