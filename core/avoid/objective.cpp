@@ -50,13 +50,16 @@ struct WayBack {
     Vec3 from = Vec3::Zero();
     Vec3 to = Vec3::Zero();
     float speed = 0.0F;
+    Seconds begins = 0.0F;  ///< after Situation::now
+
+    [[nodiscard]] Seconds duration() const noexcept { return std::max(kShortestWay, (to - from).norm() / speed); }
 };
 
 /// Whether any threat of a situation blocks it.
 bool is_blocked(const world::Situation& s, const WayBack& way, WorkBudget& budget) noexcept
 {
     constexpr world::Cutoff kClearOrNot{0.0F, 0.0F, {}};
-    const Seconds duration = std::max(kShortestWay, (way.to - way.from).norm() / way.speed);
+    const Seconds duration = way.duration();
     const Vec3 velocity = (way.to - way.from) / duration;
     const std::array<path::PathPoint, 2> points{path::PathPoint{way.from, velocity, 0.0F},
                                                 path::PathPoint{way.to, velocity, duration}};
@@ -84,7 +87,7 @@ float soft_depth(const path::PathPoint& from, const path::PathPoint& to, Seconds
     return passes ? 0.0F : std::min(area.margin, depth_of(beside(from), beside(to), area.circle.radius + area.margin));
 }
 
-/// What obstacles and closed areas at rest cost on the way back, out of their own sizes.
+/// What obstacles and closed areas cost on the way back, out of their own sizes.
 Seconds dead_end_of(const world::Situation& s, const WayBack& way, std::uint32_t units, WorkBudget& budget) noexcept
 {
     world::Situation fixed = s;
@@ -92,12 +95,14 @@ Seconds dead_end_of(const world::Situation& s, const WayBack& way, std::uint32_t
     fixed.threats = world::of_kind(s.threats, world::ThreatKind::obstacle);
     Seconds most = !fixed.threats.empty() && blocked() ? kDeadEnd : 0.0F;
     for (const world::Threat& area : world::of_kind(s.threats, world::ThreatKind::cylinder)) {
-        fixed.threats = {&area, 1};
-        if (area.velocity == Vec3::Zero() && blocked()) {
-            const world::Circle& circle = area.cylinder->circle;
-            const float depth =
-                depth_of(way.from.head<2>() - circle.centre, way.to.head<2>() - circle.centre, circle.radius);
-            most = std::max(most, kDeadEnd + kSideStep * depth / way.speed);
+        world::Cylinder then = *area.cylinder;
+        then.circle.centre += then.velocity * way.begins;
+        const world::Threat threat = world::cylinder_threat(area.ref.index, then, area.growth.radius);
+        fixed.threats = {&threat, 1};
+        if (blocked()) {
+            const world::Vec2 from = way.from.head<2>() - then.circle.centre;
+            const world::Vec2 to = way.to.head<2>() - then.circle.centre - then.velocity * way.duration();
+            most = std::max(most, kDeadEnd + kSideStep * depth_of(from, to, then.circle.radius) / way.speed);
         }
     }
     return most;
@@ -167,8 +172,9 @@ ManoeuvreCost cost_of(const world::Situation& s, const world::Manoeuvre& manoeuv
     }
     const float ahead = std::min(place.arc_length + s.rules.lookahead * speed, length);
     const std::optional<Seconds> lost = lost_from(s, flight.back().position, budget);
-    cost.dead_end =
-        lost ? *lost : dead_end_of(s, {flight.back().position, route.at(ahead).position, speed}, point_units, budget);
+    const WayBack back{flight.back().position, route.at(ahead).position, speed,
+                       flight.back().time - flight.front().time};
+    cost.dead_end = lost ? *lost : dead_end_of(s, back, point_units, budget);
     return cost;
 }
 

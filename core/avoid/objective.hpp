@@ -23,9 +23,9 @@ struct ManoeuvreCost {
     Seconds consistency = 0.0F;  ///< 1 for another method than the flown one's, and 6 for the other side
     Seconds rules = 0.0F;  ///< 6 where it passes a vehicle that avoids us too on the wrong side (passing_side.hpp)
     /// What obstacles cost from the manoeuvre's end on (CostToGo). Where that is not known: 6 where an obstacle or a
-    /// closed area at rest blocks the straight way from there to the route, FlightRules::lookahead farther along than
-    /// abeam of that end (at the route's end at most); of an area also the flight to its side and back at half the
-    /// speed, as deep as the way goes into its circle. Unknown, as the budget has ended: blocked.
+    /// closed area blocks the straight way from there to the route, FlightRules::lookahead farther along than abeam of
+    /// that end (at the route's end at most); of an area also the flight to its side and back at half the speed, as
+    /// deep as the way goes into its circle, where that is then. Unknown, as the budget has ended: blocked.
     Seconds dead_end = 0.0F;
     Vec3 side = Vec3::Zero();  ///< unit vector from the route to the farthest point; zero within 0.3 m of the route
 

@@ -202,13 +202,10 @@ TEST(DeadEnds, ReachFromTheEndToTheLookAhead)
     EXPECT_EQ(sphere_at(60, 30), 0.0F);
 }
 
-TEST(DeadEnds, AreNoneForWhatMoves)
+TEST(DeadEnds, AreNoneForTrafficAndBounds)
 {
     Flight f;
     f.scene.track(Vec3(40, 0, 32.5F), Vec3::Zero(), 3.0F);
-    f.scene.cylinder(world::Vec2(50, 0), 5.0F);
-    f.scene.cylinders[0].top = 100.0F;
-    f.scene.cylinders[0].velocity = world::Vec2(0.5F, 0);
     f.scene.airspace.has_ceiling = true;
     f.scene.airspace.ceiling = 32.0F;
     EXPECT_EQ(dead_end_of(f), 0.0F);
@@ -229,6 +226,22 @@ TEST(DeadEnds, OfAClosedAreaGrowWithTheWayThroughItsCircle)
     EXPECT_NEAR(at(-2.0F, 5.0F), 6.0F + 4.0F * 3.0F / speed, 1e-3F);
     EXPECT_NEAR(at(5.5F, 5.0F), 6.0F, 1e-3F) << "the vehicle's own width alone";
     EXPECT_EQ(at(8.0F, 5.0F), 0.0F);
+}
+
+/// The flight ends after 4 s at (20, 0), the way back takes 8 s more.
+TEST(DeadEnds, OfAnAreaThatMovesAreWhereItIsThen)
+{
+    const auto at = [](const world::Vec2& centre, const world::Vec2& velocity) {
+        Flight f;
+        f.scene.cylinder(centre, 5.0F);
+        f.scene.cylinders[0].top = 100.0F;
+        f.scene.cylinders[0].velocity = velocity;
+        return dead_end_of(f, Vec3(20, 0, 30));
+    };
+    // The vehicle is at x = 40 after 8 s.
+    EXPECT_NEAR(at({40, -24}, {0, 3}), 6.0F + 4.0F * 5.0F / Flight{}.scene.reference.speed, 0.2F);
+    EXPECT_EQ(at({40, 0}, {0, 3}), 0.0F) << "gone by then";
+    EXPECT_EQ(at({40, -60}, {0, 3}), 0.0F) << "it comes later";
 }
 
 /// Nothing behind the route's end counts, and from beyond it the way leads back.
