@@ -17,7 +17,7 @@ constexpr std::size_t kMaxErrors = 20;
 std::string_view trimmed(std::string_view text)
 {
     const std::size_t first = text.find_first_not_of(kBlanks);
-    return first == std::string_view::npos ? std::string_view{}
+    return first == std::string_view::npos ? text.substr(0, 0)
                                            : text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
@@ -73,26 +73,32 @@ std::vector<std::string_view> names()
     return out;
 }
 
+struct Fault {
+    const char* at;  ///< in the line
+    std::string text;
+};
+
 /// Sets the value of one line. @return the line's error, or nothing
-std::optional<std::string> take(const Line& line, std::size_t number, ParamValues& values,
-                                std::array<std::size_t, app::kParamCount>& seen)
+std::optional<Fault> take(const Line& line, std::size_t number, ParamValues& values,
+                          std::array<std::size_t, app::kParamCount>& seen)
 {
     const std::vector<std::string_view> known = names();
     const auto at = std::find(known.begin(), known.end(), line.name);
     if (at == known.end()) {
-        return "unknown parameter " + in_quotes(line.name) + suggestion(line.name, known);
+        return Fault{line.name.data(), "unknown parameter " + in_quotes(line.name) + suggestion(line.name, known)};
     }
     const auto index = static_cast<std::size_t>(at - known.begin());
     if (line.value.empty()) {
-        return std::string(line.name) + " has no value";
+        return Fault{line.name.data() + line.name.size(), std::string(line.name) + " has no value"};
     }
     if (seen[index] != 0) {
-        return std::string(line.name) + " was given in line " + std::to_string(seen[index]) + " already";
+        return Fault{line.name.data(),
+                     std::string(line.name) + " was given in line " + std::to_string(seen[index]) + " already"};
     }
     seen[index] = number;
     const app::ParamInfo& info = app::param_table()[index];
     if (const auto wrong = judge_number(line.value, {info.low, info.high}, info.integer, values[index])) {
-        return std::string(line.name) + ": " + *wrong + " (" + std::string(info.text) + ")";
+        return Fault{line.value.data(), std::string(line.name) + ": " + *wrong + " (" + std::string(info.text) + ")"};
     }
     return std::nullopt;
 }
@@ -157,6 +163,7 @@ std::optional<ParamValues> apply_param_text(std::string_view text, const std::st
             complaints.push_back({number, zero + 1, "a zero byte: the file has to be text", file});
             break;
         }
+        const char* const begin = line.data();
         line = trimmed(line.substr(0, line.find('#')));
         if (line.empty()) {
             continue;
@@ -164,7 +171,7 @@ std::optional<ParamValues> apply_param_text(std::string_view text, const std::st
         const Line parts = split(line);
         (parts.of_other_component ? others : own) = true;
         if (const auto wrong = parts.of_other_component ? std::nullopt : take(parts, number, changed, seen)) {
-            complaints.push_back({number, 0, *wrong, file});
+            complaints.push_back({number, static_cast<std::size_t>(wrong->at - begin) + 1, wrong->text, file});
         }
         if (complaints.size() == before + kMaxErrors && !text.empty()) {
             complaints.push_back({number + 1, 0, "too many errors: nothing is read from this line on", file});

@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::string_view kSigningHead = "# Signing key and time, written by jinkd. Keep it secret.\n";
 constexpr std::string_view kPassphrase = "passphrase ";
+constexpr std::string_view kHexDigits = "0123456789abcdefABCDEF";
 
 SigningKey digest_of(std::span<const std::byte> bytes)
 {
@@ -83,8 +84,9 @@ std::optional<SigningKey> parse_key_file(std::string_view text, const std::strin
         const auto read =
             phrase ? digest_of(std::as_bytes(std::span(line.substr(kPassphrase.size())))) : key_from_hex(line);
         if (!read || key) {
+            const std::size_t digits = std::min(line.find_first_not_of(kHexDigits), line.size());
             complaints.push_back(
-                {number, 0,
+                {number, key ? 1 : std::min(digits, 2 * SigningKey{}.size()) + 1,
                  key ? "there is a key already" : "neither 64 hexadecimal digits nor 'passphrase' and a text", file});
             return std::nullopt;
         }

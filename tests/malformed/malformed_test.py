@@ -5,8 +5,8 @@
     malformed_test.py --build FOLDER [--format NAME] [--list]
 
 Each file has to be refused: the exit status of the format, at least one and at most 25 lines on stderr, the file's
-name in them, the damaged line where the format has lines, no output written. The good file is accepted, and a
-byte-order mark and CR LF change nothing or are refused. What a format excuses has to be wrong still.
+name in them, the damaged line and a column where the format has lines, no output written. The good file is accepted,
+and a byte-order mark and CR LF change nothing or are refused. What a format excuses has to be wrong still.
 """
 import argparse
 import pathlib
@@ -75,8 +75,8 @@ def error_of(form, path, line, answer, out):
         return f"{len(said)} lines of messages"
     if not any(path.name in text for text in said):
         return f"the file's name is missing: {err[:200]}"
-    if form.has_lines and line and not any(f"{path.name}:{line}" in text for text in said):
-        return f"line {line} is missing: {err[:200]}"
+    if form.has_lines and line and not any(re.search(rf"{re.escape(path.name)}:{line}:[1-9]", text) for text in said):
+        return f"line {line} and a column are missing: {err[:200]}"
     if max(len(text) for text in said) > 1000:
         return "a message of more than 1000 characters"
     if re.search(r"terminate called|Traceback|runtime error", err):

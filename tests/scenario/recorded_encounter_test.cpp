@@ -105,35 +105,36 @@ TEST(RecordedEncounterFile, WithoutUnitsItIsDaidalussOwn)
     EXPECT_NEAR(own.velocity.z(), 3.048, 1e-9);
 }
 
-TEST(RecordedEncounterFile, RefusesWithItsLine)
+TEST(RecordedEncounterFile, RefusesWithLineAndColumn)
 {
     const std::string units = kLocalNames + kMetres;
-    EXPECT_EQ(refusal_of_encounter("NAME sx sy sz vx vy time\n"), "some.daa:1: column vz is missing");
-    EXPECT_EQ(refusal_of_encounter("# a remark\n\nsx sy sz vx vy vz time\n"), "some.daa:3: column name is missing");
+    EXPECT_EQ(refusal_of_encounter("NAME sx sy sz vx vy time\n"), "some.daa:1:25: column vz is missing");
+    EXPECT_EQ(refusal_of_encounter("# a remark\n\nsx sy sz vx vy vz time\n"), "some.daa:3:23: column name is missing");
     EXPECT_EQ(refusal_of_encounter(kLocalNames + "[none] [m] [furlong] [m] [m/s] [m/s] [m/s] [s]\n" + kTwoRows),
-              "some.daa:2: unit 'furlong' of column 'sy' is not known");
+              "some.daa:2:12: unit 'furlong' of column 'sy' is not known");
     EXPECT_EQ(refusal_of_encounter(kLocalNames + "[none] [m] [m] [m] [m/s] [deg] [m/s] [s]\n" + kTwoRows),
-              "some.daa:2: unit deg is none of column vy");
-    EXPECT_EQ(refusal_of_encounter(kLocalNames + "[none] [m] [m]\n" + kTwoRows), "some.daa:2: expected 8 units");
-    EXPECT_EQ(refusal_of_encounter(units + "Own 0 0 0 1 1 1\n"), "some.daa:3: expected 8 fields");
+              "some.daa:2:26: unit deg is none of column vy");
+    EXPECT_EQ(refusal_of_encounter(kLocalNames + "[none] [m] [m]\n" + kTwoRows),
+              "some.daa:2:15: expected 8 units, not 3");
+    EXPECT_EQ(refusal_of_encounter(units + "Own 0 0 0 1 1 1\n"), "some.daa:3:16: expected 8 fields, not 7");
     EXPECT_EQ(refusal_of_encounter(units + "Own 0 x 0 1 1 1 0\n"),
-              "some.daa:3: column sy: 'x' is not a number from -1e13 to 1e13");
+              "some.daa:3:7: column sy: 'x' is not a number from -1e13 to 1e13");
     EXPECT_EQ(refusal_of_encounter(units + "Own 0 0 0 1 nan 1 0\n"),
-              "some.daa:3: column vy: 'nan' is not a number from -1e13 to 1e13");
+              "some.daa:3:13: column vy: 'nan' is not a number from -1e13 to 1e13");
     EXPECT_EQ(refusal_of_encounter(units + "Own 0 0x10 0 1 1 1 0\n"),
-              "some.daa:3: column sy: '0x10' is not a number from -1e13 to 1e13");
+              "some.daa:3:7: column sy: '0x10' is not a number from -1e13 to 1e13");
     EXPECT_EQ(refusal_of_encounter(units + "Own 0 1e300 0 1 1 1 0\n"),
-              "some.daa:3: column sy: '1e300' is not a number from -1e13 to 1e13");
-    EXPECT_EQ(refusal_of_encounter(units + std::string("Own\0 0 0 0 1 1 1 0\n", 19)), "some.daa:3: a zero byte");
+              "some.daa:3:7: column sy: '1e300' is not a number from -1e13 to 1e13");
+    EXPECT_EQ(refusal_of_encounter(units + std::string("Own\0 0 0 0 1 1 1 0\n", 19)), "some.daa:3:1: a zero byte");
     EXPECT_EQ(refusal_of_encounter(units + "Own 0 0 0 1 1 1 1s\n"),
-              "some.daa:3: column time: '1s' is not a number from -1e13 to 1e13");
+              "some.daa:3:17: column time: '1s' is not a number from -1e13 to 1e13");
     EXPECT_EQ(refusal_of_encounter(units + kTwoRows + "Own 1 0 0 1 1 1 0\n"),
-              "some.daa:5: a second fix of Own at 0.000000 s");
-    EXPECT_EQ(refusal_of_encounter(units + "\" 0 0 0 1 1 1 0\n"), "some.daa:3: no aircraft is named before");
+              "some.daa:5:1: a second fix of Own at 0.000000 s");
+    EXPECT_EQ(refusal_of_encounter(units + "\" 0 0 0 1 1 1 0\n"), "some.daa:3:1: no aircraft is named before");
     EXPECT_EQ(refusal_of_encounter(units + "Own 0 0 0 1 1 1 0\n"), "some.daa: fewer than two aircraft");
     EXPECT_EQ(refusal_of_encounter(""), "some.daa: fewer than two aircraft");
     EXPECT_EQ(refusal_of_encounter("NAME lat lon alt vx vy vz time\nOwn 91 0 0 0 0 0 0\n"),
-              "some.daa:2: a latitude of 91.000000 deg");
+              "some.daa:2:5: a latitude of 91.000000 deg");
 }
 
 TEST(RecordedEncounterFile, PutsRowsInOrderAndCountsThem)

@@ -11,6 +11,7 @@
 #include <set>
 #include <sstream>
 
+#include "firmware/linux/complaint.hpp"
 #include "toolchain/sim/encounter_summary.hpp"
 #include "toolchain/sim/in_process.hpp"
 #include "toolchain/sim/input_file.hpp"
@@ -24,6 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kKind = "jink encounters 1";
+constexpr const char* kBlanks = " \t\r";
 
 std::string number(std::uint64_t value)
 {
@@ -47,17 +49,25 @@ std::vector<std::uint64_t> seeds_of(const fs::path& file)
     std::size_t at = 0;
     for (std::string line; std::getline(in, line);) {
         ++at;
-        std::istringstream words(line.substr(0, line.find('#')));
-        std::string word, more;
-        if (!(words >> word)) {
+        const std::string text = line.substr(0, line.find('#'));
+        const std::size_t from = text.find_first_not_of(kBlanks);
+        if (from == std::string::npos) {
             continue;
         }
+        const std::size_t end = std::min(text.find_first_of(kBlanks, from), text.size());
+        const std::size_t more = text.find_first_not_of(kBlanks, end);
+        const auto refuse = [&](std::size_t column, const char* why) {
+            throw std::runtime_error(files::to_string({at, column + 1, why, file.string()}));
+        };
         std::uint64_t seed = 0;
-        if (!read(word, seed) || words >> more) {
-            throw std::runtime_error(file.string() + ":" + number(at) + ": not one seed");
+        if (!read(text.substr(from, end - from), seed)) {
+            refuse(from, "no seed: a whole number from 0 to 2^64 - 1 is expected");
+        }
+        if (more != std::string::npos) {
+            refuse(more, "one seed to a line is expected");
         }
         if (!known.insert(seed).second) {
-            throw std::runtime_error(file.string() + ":" + number(at) + ": this seed comes twice");
+            refuse(from, "this seed comes twice");
         }
         seeds.push_back(seed);
     }

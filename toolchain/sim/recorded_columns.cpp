@@ -110,12 +110,22 @@ std::size_t need(const std::vector<std::string>& names, std::initializer_list<co
 {
     const std::optional<std::size_t> found = find(names, alternatives);
     if (!found) {
-        throw std::runtime_error(std::string("column ") + *alternatives.begin() + " is missing");
+        throw BadWord(names.size(), std::string("column ") + *alternatives.begin() + " is missing");
     }
     return *found;
 }
 
 }  // namespace
+
+std::size_t column_of(const std::string& line, std::size_t word)
+{
+    constexpr const char* kBetween = ", \t\r\v\f";
+    std::size_t begin = line.find_first_not_of(kBetween);
+    for (std::size_t i = 0; i < word && begin != std::string::npos; ++i) {
+        begin = line.find_first_not_of(kBetween, line.find_first_of(kBetween, begin));
+    }
+    return std::min(begin, line.size()) + 1;
+}
 
 std::vector<std::string> words_of(std::string line)
 {
@@ -164,7 +174,8 @@ bool RecordedColumns::take_units(const std::vector<std::string>& words)
         return false;
     }
     if (words.size() != names_.size()) {
-        throw std::runtime_error("expected " + std::to_string(names_.size()) + " units");
+        throw BadWord(std::min(words.size(), names_.size()),
+                      "expected " + std::to_string(names_.size()) + " units, not " + std::to_string(words.size()));
     }
     const auto take = [&](Column& column) {
         const std::string unit = bare(words[column.index]);
@@ -174,14 +185,14 @@ bool RecordedColumns::take_units(const std::vector<std::string>& words)
         for (const Unit& known : kUnits) {
             if (std::string(known.names).find(" " + unit + " ") != std::string::npos) {
                 if (known.quantity != column.quantity) {
-                    throw std::runtime_error("unit " + unit + " is none of column " + names_[column.index]);
+                    throw BadWord(column.index, "unit " + unit + " is none of column " + names_[column.index]);
                 }
                 column.factor = known.factor;
                 return;
             }
         }
-        throw std::runtime_error("unit " + files::in_quotes(unit) + " of column " +
-                                 files::in_quotes(names_[column.index]) + " is not known");
+        throw BadWord(column.index, "unit " + files::in_quotes(unit) + " of column " +
+                                        files::in_quotes(names_[column.index]) + " is not known");
     };
     if (!clock_) {
         take(time_);
@@ -198,8 +209,8 @@ double RecordedColumns::value(const Column& column, const std::vector<std::strin
 {
     const std::optional<double> number = number_of(words[column.index]);
     if (!number) {
-        throw std::runtime_error("column " + names_[column.index] + ": " + files::in_quotes(words[column.index]) +
-                                 " is not a number from -1e13 to 1e13");
+        throw BadWord(column.index, "column " + names_[column.index] + ": " + files::in_quotes(words[column.index]) +
+                                        " is not a number from -1e13 to 1e13");
     }
     return *number * column.factor;
 }
@@ -207,14 +218,15 @@ double RecordedColumns::value(const Column& column, const std::vector<std::strin
 RecordedRow RecordedColumns::row(const std::vector<std::string>& words) const
 {
     if (words.size() != names_.size()) {
-        throw std::runtime_error("expected " + std::to_string(names_.size()) + " fields");
+        throw BadWord(std::min(words.size(), names_.size()),
+                      "expected " + std::to_string(names_.size()) + " fields, not " + std::to_string(words.size()));
     }
     RecordedRow row;
     row.name = words[name_];
     if (clock_) {
         const std::optional<double> time = clock_of(words[time_.index]);
         if (!time) {
-            throw std::runtime_error("column clock: " + files::in_quotes(words[time_.index]) + " is not a time");
+            throw BadWord(time_.index, "column clock: " + files::in_quotes(words[time_.index]) + " is not a time");
         }
         row.time = *time;
     } else {
@@ -225,7 +237,7 @@ RecordedRow RecordedColumns::row(const std::vector<std::string>& words) const
         row.velocity[i] = value(velocity_[static_cast<std::size_t>(i)], words);
     }
     if (global_ && std::abs(row.place.x()) > 90.0) {
-        throw std::runtime_error("a latitude of " + std::to_string(row.place.x()) + " deg");
+        throw BadWord(place_[0].index, "a latitude of " + std::to_string(row.place.x()) + " deg");
     }
     if (polar_) {
         const double track = row.velocity.x() / kRadian;

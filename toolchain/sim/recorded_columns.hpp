@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,14 @@ namespace jink::sim {
 
 /// Separated by blanks or commas.
 [[nodiscard]] std::vector<std::string> words_of(std::string line);
+/// Where that word begins in the line, or the line ends where it has no such word: from 1.
+[[nodiscard]] std::size_t column_of(const std::string& line, std::size_t word);
+
+/// What is wrong with a word of a line.
+struct BadWord : std::runtime_error {
+    BadWord(std::size_t at, const std::string& text) : std::runtime_error(text), word(at) {}
+    std::size_t word;  ///< from 0; the number of words: there are too few
+};
 
 /// Contents of a row, in SI units except for the angles of a global place.
 struct RecordedRow {
@@ -26,12 +35,12 @@ struct RecordedRow {
 /// Positions and unit factors of the columns that are read.
 class RecordedColumns {
 public:
-    /// @throws std::runtime_error when a column is missing
+    /// @throws BadWord when a column is missing
     explicit RecordedColumns(const std::vector<std::string>& names);
 
-    /// False where the words are the first row instead of units. @throws std::runtime_error
+    /// False where the words are the first row instead of units. @throws BadWord
     [[nodiscard]] bool take_units(const std::vector<std::string>& words);
-    /// @throws std::runtime_error
+    /// @throws BadWord
     [[nodiscard]] RecordedRow row(const std::vector<std::string>& words) const;
     [[nodiscard]] bool global() const noexcept { return global_; }
 

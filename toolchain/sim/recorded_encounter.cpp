@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "firmware/linux/complaint.hpp"
 #include "toolchain/sim/input_file.hpp"
 #include "toolchain/sim/recorded_columns.hpp"
 
@@ -43,13 +44,14 @@ class EncounterReader {
 public:
     RecordedEncounter read(std::istream& in, const std::string& name)
     {
-        int number = 0;
+        std::size_t number = 0;
         for (std::string line; std::getline(in, line);) {
             ++number;
+            const std::string text = line.substr(0, line.find('#'));
             try {
-                take(words_of(line.substr(0, line.find('#'))), line);
-            } catch (const std::exception& e) {
-                throw std::runtime_error(name + ":" + std::to_string(number) + ": " + e.what());
+                take(words_of(text), line);
+            } catch (const BadWord& e) {
+                throw std::runtime_error(files::to_string({number, column_of(text, e.word), e.what(), name}));
             }
         }
         if (encounter_.aircraft.size() < 2) {
@@ -64,8 +66,8 @@ private:
         if (words.empty()) {
             return;
         }
-        if (line.find('\0') != std::string::npos) {
-            throw std::runtime_error("a zero byte");
+        if (const std::size_t zero = line.find('\0'); zero != std::string::npos) {
+            throw BadWord(words_of(line.substr(0, zero) + "x").size() - 1, "a zero byte");
         }
         if (!columns_) {
             if (line.find('=') == std::string::npos) {
@@ -87,7 +89,7 @@ private:
         // As in DAIDALUS: the aircraft of the row before.
         const bool again = row.name == "\"";
         if (again && last_name_.empty()) {
-            throw std::runtime_error("no aircraft is named before");
+            throw BadWord(0, "no aircraft is named before");
         }
         const std::string name = again ? last_name_ : row.name;
         Fix fix;
@@ -105,7 +107,7 @@ private:
         const auto later = std::upper_bound(fixes.begin(), fixes.end(), fix.time,
                                             [](double time, const Fix& other) { return time < other.time; });
         if (later != fixes.begin() && (later - 1)->time == fix.time) {
-            throw std::runtime_error("a second fix of " + last_name_ + " at " + std::to_string(fix.time) + " s");
+            throw BadWord(0, "a second fix of " + last_name_ + " at " + std::to_string(fix.time) + " s");
         }
         encounter_.reordered += later != fixes.end() ? 1U : 0U;
         fixes.insert(later, fix);
