@@ -204,7 +204,7 @@ def test_running(a):
                 file.write_text("".join(f"{entry['name']},{next_single(single(entry[end]), up)!r}\n" for entry in part), encoding="utf-8")
                 said = ran(a.jink, "check", file, status=2)
                 for line, entry in enumerate(part, 1):
-                    assert f"limits.param:{line}: {entry['name']}: " in said, f"{entry['name']} goes beyond its {end}: {said}"
+                    assert f"limits.param:{line}:{len(entry['name']) + 2}: {entry['name']}: " in said, f"{entry['name']} goes beyond its {end}: {said}"
 
 
 def rows_of(text, system=1):
@@ -244,7 +244,7 @@ def test_refusals(a):
     with tempfile.TemporaryDirectory() as folder:
         bad, out = pathlib.Path(folder, "bad.params"), pathlib.Path(folder, "out")
         bad.write_text("# saved\n1\t196\tJNK_MODE\t7\t9\n1\t1\tFRAME_CLASS\t1\t2\n", encoding="utf-8")
-        for options, said in ((("--params", bad), f"{bad}:2: JNK_MODE: '7' is out of range: 0 to 2"),
+        for options, said in ((("--params", bad), f"{bad}:2:16: JNK_MODE: '7' is out of range: 0 to 2"),
                               (("--params", pathlib.Path(folder, "none")), "no such file"),
                               (("--vehicle", bad), "bad.params"),
                               (("--format", "xml"), "--format"), (("--system", "0"), "--system"), (("--metadata-version", "2"), "--metadata-version")):

@@ -124,9 +124,9 @@ TEST(Command, CheckKnowsEveryKindOfFile)
     const Ran bad = jink(scratch, "check bad.parm problem.yaml odd.parm");
     EXPECT_EQ(bad.status, 2);
     EXPECT_EQ(bad.out, "problem.yaml: good (problem)\n");
-    EXPECT_NE(bad.err.find("bad.parm:1: unknown parameter 'JNK_MOOD'; did you mean 'JNK_MODE'?\n"), std::string::npos)
+    EXPECT_NE(bad.err.find("bad.parm:1:1: unknown parameter 'JNK_MOOD'; did you mean 'JNK_MODE'?\n"), std::string::npos)
         << bad.err;
-    EXPECT_NE(bad.err.find("bad.parm:2: JNK_MODE: '7' is out of range: 0 to 2"), std::string::npos) << bad.err;
+    EXPECT_NE(bad.err.find("bad.parm:2:10: JNK_MODE: '7' is out of range: 0 to 2"), std::string::npos) << bad.err;
     EXPECT_NE(bad.err.find("odd.parm: GEO_OFFSETS must be even"), std::string::npos) << bad.err;
 
     const Ran scenario = jink(scratch, "check scenario.yaml");
