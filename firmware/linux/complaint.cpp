@@ -77,6 +77,27 @@ std::string printable(std::string_view text)
     return text.size() > kLongest ? out + "..." : out;
 }
 
+std::size_t end_of_utf8(std::string_view text)
+{
+    const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
+    for (std::size_t i = 0; i < text.size();) {
+        const unsigned first = byte(i);
+        const std::size_t more = first < 0x80U ? 0U : first < 0xE0U ? 1U : first < 0xF0U ? 2U : 3U;
+        // The second byte excludes what has a shorter form, surrogates, and what is beyond U+10FFFF.
+        const unsigned low = first == 0xE0U ? 0xA0U : first == 0xF0U ? 0x90U : 0x80U;
+        const unsigned high = first == 0xEDU ? 0x9FU : first == 0xF4U ? 0x8FU : 0xBFU;
+        bool good = more == 0 || (first >= 0xC2U && first <= 0xF4U && byte(i + 1) >= low && byte(i + 1) <= high);
+        for (std::size_t k = 2; k <= more; ++k) {
+            good = good && (byte(i + k) & 0xC0U) == 0x80U;
+        }
+        if (!good) {
+            return i;
+        }
+        i += more + 1;
+    }
+    return text.size();
+}
+
 std::string in_quotes(std::string_view text)
 {
     std::string out(1, '\'');

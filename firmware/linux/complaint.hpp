@@ -39,6 +39,9 @@ struct Range {
 /// The same in single quotes.
 [[nodiscard]] std::string in_quotes(std::string_view text);
 
+/// Where the first byte is that is no UTF-8 (RFC 3629); the text's size where all of it is.
+[[nodiscard]] std::size_t end_of_utf8(std::string_view text);
+
 enum class NumberStatus { ok, not_a_number, not_finite, too_big };
 /// Reads a decimal number that is the whole of `text`: optional sign, no blanks, no hexadecimal. Independent of the
 /// locale.

@@ -103,6 +103,10 @@ std::optional<YAML::Node> parse_yaml(const std::string& text, const std::string&
         complaints.push_back(complaint_at(text, zero, file, "a zero byte: the file has to be text in UTF-8"));
         return std::nullopt;
     }
+    if (const std::size_t end = end_of_utf8(text); end < text.size()) {
+        complaints.push_back(complaint_at(text, end, file, "a byte that is no UTF-8"));
+        return std::nullopt;
+    }
     try {
         std::vector<YAML::Node> documents = YAML::LoadAll(text);
         if (documents.size() != 1) {

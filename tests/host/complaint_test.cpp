@@ -5,10 +5,13 @@
 
 #include "firmware/linux/complaint.hpp"
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <nlohmann/json.hpp>
+#include <random>
 
 #include "core/base/random.hpp"
 #include "tests/host/scratch.hpp"
@@ -34,6 +37,40 @@ TEST(Complaint, PrintsWhatOutsidersWroteHarmlessly)
     EXPECT_EQ(printable(std::string_view("\x1b[2J\0", 5)), "\\x1b[2J\\x00");
     EXPECT_EQ(printable(std::string(100, 'a')), std::string(60, 'a') + "...");
     EXPECT_EQ(in_quotes("\xff"), "'\\xff'");
+}
+
+TEST(EndOfUtf8, IsTheFirstByteThatIsNone)
+{
+    EXPECT_EQ(end_of_utf8(""), 0U);
+    EXPECT_EQ(end_of_utf8("a \xC3\xA9 \xE2\x82\xAC \xF0\x9F\x9A\x81"), 13U);
+    EXPECT_EQ(end_of_utf8("ab\xFF"
+                          "c"),
+              2U);
+    EXPECT_EQ(end_of_utf8("ab\xE2\x82"), 2U) << "cut off";
+}
+
+/// The oracle is the writer that refuses such bytes.
+TEST(EndOfUtf8, AgreesWithTheJsonWriter)
+{
+    std::mt19937 random(7U);
+    const std::array<unsigned char, 18> edges{0x00, 0x41, 0x7F, 0x80, 0x8F, 0x90, 0x9F, 0xA0, 0xBF,
+                                              0xC0, 0xC2, 0xDF, 0xE0, 0xED, 0xEF, 0xF0, 0xF4, 0xF5};
+    int good = 0;
+    for (int i = 0; i < 200'000; ++i) {
+        std::string text(1 + random() % 4, ' ');
+        for (char& c : text) {
+            c = static_cast<char>(random() % 4 == 0 ? random() % 256 : edges[random() % edges.size()]);
+        }
+        bool taken = true;
+        try {
+            static_cast<void>(nlohmann::json(text).dump());
+        } catch (const nlohmann::json::exception&) {
+            taken = false;
+        }
+        ASSERT_EQ(end_of_utf8(text) == text.size(), taken) << printable(text);
+        good += taken ? 1 : 0;
+    }
+    EXPECT_GT(good, 1000);
 }
 
 TEST(ParseNumber, TakesDecimalsAndNothingElse)

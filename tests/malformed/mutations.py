@@ -92,6 +92,7 @@ def of_yaml(good, number, key, required):
     yield "a number as a key", good + b"5: 1\n", text.count("\n") + 1
     yield "a list as a key", good + b"? [a, b]\n: 1\n", text.count("\n") + 1
     yield "a missing key", text.replace(required, "").encode(), None
+    yield "a remark that is no UTF-8", good + b"# \xff\n", text.count("\n") + 1
     yield "only remarks", b"# nothing\n# at all\n", None
     yield "a list in place of keys", b"- 1\n- 2\n", None
     yield "a scalar", b"42\n", None
