@@ -44,6 +44,7 @@ RULES = [
     (r"core/path/route|route_way\.cpp:.*segment", "each", lambda p: 1),
     (r"route_way\.cpp|RoutePieces|WayPiece", "each", lambda p: 3),
     (r"Run::passing|moving_solids|solid\.shape|clearance_solids\.cpp|geometric/extent\.hpp", "each", lambda p: 0),
+    (r"keeps_soft_margins", "each", lambda p: 1),  # no closed areas: one round
     (r"solve_with_retries", "each", lambda p: p["attempts"]),
     (r"in_a_row\.cpp:.*(kFirstParts|look < 2)", "each", lambda p: 2),
     (r"solve_in_a_row.*part", "each", lambda p: 2),
