@@ -126,8 +126,11 @@ ManoeuvreCost cost_of(const world::Situation& s, const world::Manoeuvre& manoeuv
     for (const path::RouteSegment& segment : route.segments()) {
         point_units += segment.is_arc() ? units::kObjectiveArc : units::kObjectivePoint;
     }
-    const std::span areas = world::of_kind(s.threats, world::ThreatKind::cylinder);
-    const std::uint32_t soft_units = static_cast<std::uint32_t>(areas.size()) * units::kObjectivePoint;
+    std::span areas = world::of_kind(s.threats, world::ThreatKind::cylinder);
+    if (std::none_of(areas.begin(), areas.end(), [](const auto& area) { return area.cylinder->margin > 0.0F; })) {
+        areas = {};  // nothing is soft
+    }
+    point_units += static_cast<std::uint32_t>(areas.size()) * units::kObjectivePoint;
     bool paid = s.reference.valid && budget.spend(units::kObjective);
     const float speed = std::max(kMinSpeed, s.reference.speed);
     const float length = route.length();
@@ -139,7 +142,7 @@ ManoeuvreCost cost_of(const world::Situation& s, const world::Manoeuvre& manoeuv
     Place first;
     Place place;
     for (const path::PathPoint& point : flight) {
-        paid = paid && budget.spend(point_units + soft_units);
+        paid = paid && budget.spend(point_units);
         if (!paid) {
             cost.delay = std::numeric_limits<float>::infinity();
             return cost;
