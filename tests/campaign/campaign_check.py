@@ -127,8 +127,8 @@ def refusals(programs, top):
     refused(["--out", top / "new", "--count", "0"], "--count")
     refused(["--out", top / "new", "--planner", "mine"], "--planner")
     seeds = top / "seeds.txt"
-    for text, said in (("1\nx\n", ":2: not one seed"), ("5 6\n", ":1: not one seed"), ("7\n8\n7\n", ":3: this seed comes twice"),
-                       ("# none\n", "lists no seeds"), ("-1\n", ":1: not one seed")):
+    for text, said in (("1\nx\n", ":2:1: no seed: a whole number"), ("5 6\n", ":1:3: one seed to a line"), ("7\n8\n7\n", ":3:1: this seed comes twice"),
+                       ("# none\n", "lists no seeds"), (" -1\n", ":1:2: no seed: a whole number")):
         seeds.write_text(text)
         refused(["--seed-file", seeds, "--out", top / "new"], said)
     check(not (top / "new").exists(), "a folder was made for what was refused")
