@@ -2,7 +2,10 @@
 // Data of the page of jink report: columns, unknown values, fates.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <random>
 
 #include <nlohmann/json.hpp>
@@ -119,6 +122,48 @@ TEST(FlightPageData, UncheckedCandidates)
     EXPECT_EQ(flightlog::fate_of_unchecked(false, true, false), flightlog::Fate::budget_spent)
         << "its cost was never computed";
     EXPECT_EQ(flightlog::fate_of_unchecked(false, false, false), flightlog::Fate::budget_spent);
+}
+
+TEST(ReadRun, ARefusalPointsAtTheWrongValue)
+{
+    using nlohmann::json;
+    const json good{{"format", "jink-sim run"},
+                    {"version", 2},
+                    {"flights",
+                     {{{"name", "one: [2], {\"3\"}"},
+                       {"as_expected", true},
+                       {"promise", 0.7},
+                       {"least", {{"surface", 1.5}, {"t", 1.0}, {"threat", "a\\"}}},
+                       {"mission", {{0, 0, 30}, {60, 0, 30}}},
+                       {"threats", {{{"name", "a\\"}, {"radius", 1.0}, {"moves", true}, {"positions", {{9, 0, 30}}}}}},
+                       {"series", {{"t", {0.0}}, {"position", {{1, 2, 30}}}, {"mode", {"mission"}}}},
+                       {"decisions", {{{"t", 0.5}, {"text", ""}, {"start", {0, 0, 30}}}}}}}}};
+    const json wrong{{"@", "]}"}};  // an object where none is expected
+    const auto file = std::filesystem::path(testing::TempDir()) / "wrong_run.json";
+    const json flat = good.flatten();
+    std::size_t refused = 0;
+    for (const auto& [at, value] : flat.items()) {
+        for (const int indent : {-1, 0, 3}) {
+            json one = good;
+            one[json::json_pointer(at)] = wrong;
+            const std::string text = one.dump(indent);
+            std::ofstream(file, std::ios::binary) << text;
+            std::string said;
+            try {
+                static_cast<void>(read_run(file));
+            } catch (const BadFlight& error) {
+                said = error.what();
+            }
+            const std::size_t place = text.rfind('{', text.find("\"@\""));
+            const std::size_t begin = text.rfind('\n', place) + 1;
+            const auto line = std::count(text.begin(), text.begin() + std::ptrdiff_t(place), '\n') + 1;
+            const std::string expected =
+                file.string() + ":" + std::to_string(line) + ":" + std::to_string(place - begin + 1) + ": ";
+            EXPECT_TRUE(said.starts_with(expected)) << at << ": " << said << " expected: " << expected << "\n" << text;
+            refused += said.empty() ? 0U : 1U;
+        }
+    }
+    EXPECT_EQ(refused, 3 * flat.size());
 }
 
 }  // namespace

@@ -155,6 +155,17 @@ def replays(t):
     t.expect(t.run([t.jink, "log", "--replay", "flight.ulg"]).returncode == 0, "the good log is no longer replayed")
 
 
+def foreign_names(t):
+    """A scenario's name that is no UTF-8 is flown; what is written stays readable."""
+    name = b"caf\xe9.yaml"
+    with open(os.fsencode(t.folder) + b"/" + name, "wb") as file:
+        file.write(SCENARIO.read_bytes())
+    ran = t.run([t.sim, "fly", os.fsdecode(name), "--out", "cafe"])
+    t.expect(ran.returncode == 0, f"fly {name}: {ran.returncode}: {ran.stderr[:300]}")
+    ran = t.run([t.jink, "report", "cafe", "--out", "cafe.html"])
+    t.expect(ran.returncode == 0 and (t.folder / "cafe.html").exists(), f"report of {name}: {ran.returncode}: {ran.stderr[:300]}")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--build", type=pathlib.Path, required=True)
@@ -169,7 +180,7 @@ def main():
         formats.made([t.sim, "fly", SCENARIO, "--out", folder / "run"], folder / "run/run.json")
         (folder / "log").mkdir()
         (folder / "flight.ulg").write_bytes(formats.flight_log(build / "firmware/linux/jinkd", folder / "log"))
-        for part in (numbers, words, programs, same_files, full_disk, lost_output, replays):
+        for part in (numbers, words, programs, same_files, full_disk, lost_output, replays, foreign_names):
             before = len(t.errors)
             part(t)
             print(f"{part.__name__}: {len(t.errors) - before} errors", flush=True)

@@ -126,7 +126,7 @@ def key_damages():
                        "a passphrase without text": b"passphrase\n", "an empty passphrase": b"passphrase \n", "0x in front": b"0x" + KEY,
                        "quotes": b'"' + KEY[:64] + b'"\n', "another word": b"password abc\n", "UTF-16": KEY.decode().encode("utf-16"),
                        "a zero byte": KEY[:10] + b"\0" + KEY[11:]}.items():
-        yield name, text, None
+        yield name, text, 2 if name == "two lines" else 1
 
 
 def damages_of_mesh():
@@ -173,10 +173,22 @@ def model_damages(good):
         yield from mutations.of_any_file(good)
         yield from mutations.of_text(good)
         text = good.decode()
-        for name, old, new in (("a number less", "30 10 1", "30 10"), ("a text", "30 10 1", "30 x 1"), ("NaN", "30 10 1", "nan 10 1"), ("a negative count", "30 10 1", "-30 10 1"),
-                               ("a circle", "0 1 0 0 0\n0 0 0 0 0", "0 1 0 0 0\n1 0 0 0 0"), ("a part missing", "# r_initial\n2 2 1 1 1\n", ""),
-                               ("another size", "2 2 1 1 1", "2 2 1 1"), ("a size of nothing", "2 2 1 1 1", "0 2 1 1 1"), ("a huge size", "2 2 1 1 1", "999999999 2 1 1 1")):
-            yield name, text.replace(old, new, 1).encode(), None
+        counts = mutations.line_of(text, "30 10 1")
+        for name, old, new, line in (
+                ("a number less", "30 10 1", "30 10", counts), ("a number more", "30 10 1", "30 10 1 1", counts), ("a text", "30 10 1", "30 x 1", counts),
+                ("NaN", "30 10 1", "nan 10 1", counts), ("infinity", "30 10 1", "inf 10 1", counts), ("hexadecimal", "30 10 1", "0x1e 10 1", counts),
+                ("a decimal comma", "30 10 1", "30,5 10 1", counts), ("too large for a double", "30 10 1", "1e999 10 1", counts), ("a negative count", "30 10 1", "-30 10 1", counts),
+                ("a circle", "0 0 0 0 0\n0 0 0 0 0\n# r_initial", "0 0 0 0 0\n0 0 0 0 1\n# r_initial", mutations.line_of(text, "# G_initial")),
+                ("a graph of another size", "0 1 0 0 0", "0 1 0 0", mutations.line_of(text, "# r_initial") - 1), ("a part missing", "# r_initial\n2 2 1 1 1\n", "", 0),
+                ("a part twice", "# r_initial", "# G_initial", mutations.line_of(text, "# r_initial")), ("a text in front", "# labels_initial", "labels_initial", 1),
+                ("another size", "2 2 1 1 1", "2 2 1 1", mutations.line_of(text, "2 2 1 1 1")), ("a size of nothing", "2 2 1 1 1", "0 2 1 1 1", mutations.line_of(text, "2 2 1 1 1")),
+                ("a huge size", "2 2 1 1 1", "999999999 2 1 1 1", mutations.line_of(text, "2 2 1 1 1")), ("a size that is no whole number", "2 2 1 1 1", "1.5 2 1 1 1", mutations.line_of(text, "2 2 1 1 1")),
+                ("an unknown variable", '"v"', '"w"', 1), ("edges that go back", "100 200 300", "100 300 200", mutations.line_of(text, "100 200 300")),
+                ("an edge less", "100 200 300", "100 200", mutations.line_of(text, "100 200 300")), ("edges missing", "-1 1\n", "*\n", mutations.line_of(text, "-1 1")),
+                ("a line of edges less", "-1 1\n", "", mutations.line_of(text, "# boundaries"))):
+            if old not in text:
+                raise ValueError(f"the good model lacks {old}")
+            yield name, text.replace(old, new, 1).encode(), line
     return damages
 
 
@@ -283,18 +295,17 @@ def all_formats(build, work):
                  excused=NO_PARAMETER)
     yield Format("airspace (jinkd)", ".yaml", AIRSPACE, lambda f, o: daemon("--airspace", f), damages_of_yaml(AIRSPACE, "frame: local", "frame", "    radius: 400\n"),
                  runs_on=True, patience=0.5)
-    yield Format("signing key (jinkd)", ".key", KEY, lambda f, o: daemon("--signing-key", f, "--state", o / "state"), key_damages, has_lines=False, runs_on=True, patience=0.5)
+    yield Format("signing key (jinkd)", ".key", KEY, lambda f, o: daemon("--signing-key", f, "--state", o / "state"), key_damages, runs_on=True, patience=0.5)
     yield Format("map (jink mesh show)", ".map", jmap, lambda f, o: [jink, "mesh", "show", f], damages_of_map(jmap), has_lines=False)
     yield Format("map (jinkd)", ".map", jmap, lambda f, o: daemon("--map", f), some(damages_of_map(jmap)), has_lines=False, runs_on=True, patience=0.5)
     yield Format("mesh (jink mesh build)", ".obj", MESH, lambda f, o: [jink, "mesh", "build", f, "--out", o / "map"], damages_of_mesh)
     yield Format("mesh of facets (jink mesh build)", ".stl", STL, lambda f, o: [jink, "mesh", "build", f, "--out", o / "map"], damages_of_stl)
     yield Format("flight log (jink log)", ".ulg", log, lambda f, o: [jink, "log", f, "--csv", o / "csv"], damages_of_ulog(log), has_lines=False)
     yield Format("flight log (replay)", ".ulg", log, lambda f, o: [jink, "log", "--replay", f], damages_of_ulog(log), has_lines=False)
-    yield Format("run (jink report)", ".json", run, lambda f, o: [jink, "report", f, "--out", o / "report.html"], damages_of_run(run), has_lines=False)
+    yield Format("run (jink report)", ".json", run, lambda f, o: [jink, "report", f, "--out", o / "report.html"], damages_of_run(run))
     yield Format("recording (jink-sim replay)", ".wire", WIRE, lambda f, o: [sim, "replay", f], damages_of_wire(WIRE), has_lines=False)
     yield Format("recorded encounter (jink-sim recorded)", ".daa", DAA, lambda f, o: [sim, "recorded", f], damages_of_daa)
-    yield Format("encounter model (jink-sim manned)", ".txt", model, lambda f, o: [sim, "manned", f, "--count", "1"], model_damages(model), has_lines=False,
-                 checks_good=False)  # it has no track that is low enough to be flown beside
+    yield Format("encounter model (jink-sim manned)", ".txt", model, lambda f, o: [sim, "manned", f, "--count", "1"], model_damages(model), checks_good=False)  # it has no track that is low enough to be flown beside
     yield Format("seeds (jink-sim encounters)", ".txt", SEEDS, lambda f, o: [sim, "encounters", "--seed-file", f, "--out", o / "blocks"],
                  with_lines(SEEDS, ("a text", "x", 1), ("NaN", "nan", 1), ("a negative number", "-1", 1), ("a fraction", "1.5", 1), ("too large", "9" * 30, 1),
                             ("two numbers", "11 12", 1), ("hexadecimal", "0x11", 1), ("a unit behind", "11s", 1), ("a sign", "+11", 1)))

@@ -101,15 +101,30 @@ TEST(EncounterModel, RefusesWhatIsNoModel)
         return std::string();
     };
     EXPECT_EQ(refusal_of_changed("# r_initial", "# s_initial"), "model: no section r_initial");
-    EXPECT_EQ(refusal_of_changed("30 10 1", "30 10"), "model: N_initial has too few counts");
-    EXPECT_EQ(refusal_of_changed("5 5 5", "5 5 5 5"), "model: N_initial has too many counts");
-    EXPECT_EQ(refusal_of_changed("30 10", "-30 10"), "model: N_initial has a negative count");
-    EXPECT_EQ(refusal_of_changed("30 10", "x 10"), "model: a number of N_initial is none");
+    EXPECT_EQ(refusal_of_changed("# r_initial", "# G_initial"), "model:9:1: section 'G_initial' comes twice");
+    EXPECT_EQ(refusal_of_changed("# labels_initial", "labels"),
+              "model:1:1: expected '# ' and a section's name, not 'labels'");
+    EXPECT_EQ(refusal_of_changed("30 10 1", "30 10"), "model:12:18: N_initial: has too few counts");
+    EXPECT_EQ(refusal_of_changed("5 5 5", "5 5 5 5"), "model:12:21: N_initial: has too many counts");
+    EXPECT_EQ(refusal_of_changed("10 1 3", "10 -1 3"), "model:12:7: N_initial: a count is not below 0");
+    EXPECT_EQ(refusal_of_changed("10 1 3", "10 x 3"), "model:12:7: N_initial: expected a number, not 'x'");
+    EXPECT_EQ(refusal_of_changed("10 1 3", "10 inf 3"), "model:12:7: N_initial: expected a number, not 'inf'");
+    EXPECT_EQ(refusal_of_changed("10 1 3", "10 0x1 3"), "model:12:7: N_initial: expected a number, not '0x1'");
     EXPECT_EQ(refusal_of_changed("2 2 1 1 1\n# N_initial", "2 2 1 1.5 1\n# N_initial"),
-              "model: r_initial does not have a number of bins for each variable");
-    EXPECT_EQ(refusal_of_changed("\"v\"", "\"w\""), "model: no variable v");
-    EXPECT_NE(refusal_of_changed("100 200 300", "100 300 200").find("edge"), std::string::npos);
-    EXPECT_NE(refusal_of_changed("0 1 0 0 0\n0 0 0 0 0", "0 1 0 0 0\n1 0 0 0 0"), "");
+              "model:10:7: r_initial: expected a number of bins, a whole one from 1 to 1000");
+    EXPECT_EQ(refusal_of_changed("2 2 1 1 1\n# N_initial", "2 2 1 1\n# N_initial"),
+              "model:10:8: r_initial: expected 5 numbers, not 4");
+    EXPECT_EQ(refusal_of_changed("0 1 0 0 0\n", "0 1 0 0 0 0\n"), "model:8:9: G_initial: expected 25 numbers, not 26");
+    EXPECT_EQ(refusal_of_changed("\"v\"", "\"w\""), "model:1:1: no variable v");
+    EXPECT_EQ(refusal_of_changed("100 200 300", "100 300 200"),
+              "model:27:9: boundaries: expected an edge that is not below the one before it");
+    EXPECT_EQ(refusal_of_changed("-1 1\n", "-1\n"), "model:29:3: boundaries: expected 2 numbers, not 1");
+    EXPECT_EQ(refusal_of_changed("-1 1\n", "*\n"), "model:29:1: \\dotv has no edges");
+    EXPECT_EQ(refusal_of_changed("-1 1\n", ""), "model:26:1: boundaries: expected a line for each of 5 variables");
+    EXPECT_EQ(refusal_of_changed("0 1 0 0 0\n0 0 0 0 0", "0 1 0 0 0\n1 0 0 0 0"),
+              "model:12:20: N_initial: has too few counts");
+    EXPECT_EQ(refusal_of_changed("0 1 0 0 0\n0 0 0 0 0\n0 0 0 0 0", "0 1 0 0 0\n0 0 0 0 0\n0 0 1 0 0"),
+              "model:3:1: the initial network has a cycle");
     for (std::size_t cut = 0; cut + 20 < good.size(); cut += 7) {
         std::istringstream in(good.substr(0, cut));
         EXPECT_THROW(static_cast<void>(EncounterModel::read(in, "model")), std::runtime_error) << cut;

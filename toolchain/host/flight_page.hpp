@@ -122,7 +122,8 @@ struct PageSource {
     std::vector<PageFlight> flights;
 };
 
-/// Flights of a run.json. Missing keys are left out; a value of another type than expected is a BadFlight.
+/// Flights of a run.json. Missing keys are left out; a value of another type than expected is a BadFlight
+/// with its line and column.
 [[nodiscard]] PageSource read_run(const std::filesystem::path& file);
 /// The flight of a ULog file of jinkd, sampled at 10 Hz, up to its damage. BadFlight where nothing can be read.
 [[nodiscard]] PageSource read_flight_log(const std::filesystem::path& file);

@@ -8,7 +8,9 @@
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 
+#include "firmware/linux/complaint.hpp"
 #include "toolchain/sim/input_file.hpp"
 #include "toolchain/sim/uniform.hpp"
 
@@ -19,82 +21,148 @@ constexpr double kKnot = 1852.0 / 3600.0;
 constexpr double kFoot = 0.3048;
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-using Lines = std::vector<std::string>;
+constexpr const char* kBetweenNumbers = " \t";
 
+/// Where something stands, from 1.
+struct Place {
+    std::size_t line = 1;
+    std::size_t column = 1;
+};
+
+struct Line {
+    std::size_t number = 0;
+    std::string text;
+};
+
+/// The numbers of a section or a line, and where each of them stands.
+struct Numbers {
+    std::vector<double> values;
+    std::vector<Place> places;
+    Place end;  ///< where one more would have been expected
+
+    /// Of the number `i`, or of the end where there are fewer.
+    [[nodiscard]] Place place(std::size_t i) const { return i < places.size() ? places[i] : end; }
+};
+
+/// "# name" begins a section, which lasts until the next one.
 class Sections {
 public:
     Sections(std::istream& in, std::string name) : name_(std::move(name))
     {
-        Lines* lines = nullptr;
+        Section* section = nullptr;
+        std::size_t number = 0;
         for (std::string line; std::getline(in, line);) {
+            ++number;
             line.erase(line.find_last_not_of(" \t\r") + 1);
             if (line.starts_with("#")) {
-                lines = &sections_[line.substr(std::min(line.size(), line.find_first_not_of("# ")))];
-            } else if (lines != nullptr && !line.empty()) {
-                lines->push_back(line);
+                const std::string title = line.substr(std::min(line.size(), line.find_first_not_of("# ")));
+                section = &sections_[title];
+                if (section->heading != 0) {
+                    refuse({number, 1}, "section " + files::in_quotes(title) + " comes twice");
+                }
+                section->heading = number;
+            } else if (!line.empty() && section == nullptr) {
+                refuse({number, 1}, "expected '# ' and a section's name, not " + files::in_quotes(line));
+            } else if (!line.empty()) {
+                section->lines.push_back({number, std::move(line)});
             }
         }
     }
 
-    [[noreturn]] void refuse(const std::string& what) const { throw std::runtime_error(name_ + ": " + what); }
-
-    [[nodiscard]] const Lines& lines(const std::string& section) const
+    [[noreturn]] void refuse(Place at, const std::string& what) const
     {
-        const auto found = sections_.find(section);
-        if (found == sections_.end()) {
-            refuse("no section " + section);
-        }
-        return found->second;
+        throw std::runtime_error(files::to_string({at.line, at.column, what, name_}));
     }
+
+    [[nodiscard]] Place heading(const std::string& section) const { return {found(section).heading, 1}; }
+    [[nodiscard]] const std::vector<Line>& lines(const std::string& section) const { return found(section).lines; }
     [[nodiscard]] std::vector<std::string> labels(const std::string& section) const
     {
+        std::string text;
+        for (const Line& line : lines(section)) {
+            text += line.text + ' ';
+        }
         std::vector<std::string> words;
-        std::istringstream line(all(section));
-        for (std::string word; std::getline(line, word, ',');) {
+        std::istringstream list(text);
+        for (std::string word; std::getline(list, word, ',');) {
             std::erase_if(word, [](char c) { return c == '"' || c == ' '; });
             words.push_back(word);
         }
         return words;
     }
-    [[nodiscard]] std::vector<double> numbers(const std::string& section) const { return of(all(section), section); }
-    [[nodiscard]] std::vector<double> of(const std::string& text, const std::string& section) const
+    [[nodiscard]] Numbers numbers(const std::string& section) const
     {
-        std::vector<double> values;
-        std::istringstream words(text);
-        for (double value = 0.0; words >> value;) {
-            values.push_back(value);
+        Numbers all;
+        all.end = heading(section);
+        for (const Line& line : lines(section)) {
+            append(line, section, all);
         }
-        if (!words.eof() || std::any_of(values.begin(), values.end(), [](double v) { return !std::isfinite(v); })) {
-            refuse("a number of " + section + " is none");
-        }
-        return values;
+        return all;
+    }
+    [[nodiscard]] Numbers of(const Line& line, const std::string& section) const
+    {
+        Numbers all;
+        append(line, section, all);
+        return all;
     }
 
 private:
-    [[nodiscard]] std::string all(const std::string& section) const
+    struct Section {
+        std::size_t heading = 0;  ///< its line
+        std::vector<Line> lines;
+    };
+
+    [[nodiscard]] const Section& found(const std::string& section) const
     {
-        std::string text;
-        for (const std::string& line : lines(section)) {
-            text += line + ' ';
+        const auto place = sections_.find(section);
+        if (place == sections_.end()) {
+            throw std::runtime_error(name_ + ": no section " + section);
         }
-        return text;
+        return place->second;
+    }
+    void append(const Line& line, const std::string& section, Numbers& all) const
+    {
+        const std::string_view text = line.text;
+        for (std::size_t from = text.find_first_not_of(kBetweenNumbers); from < text.size();) {
+            const std::size_t end = std::min(text.find_first_of(kBetweenNumbers, from), text.size());
+            const std::string_view word = text.substr(from, end - from);
+            double value = 0.0;
+            if (files::parse_number(word, value) != files::NumberStatus::ok) {
+                refuse({line.number, from + 1}, section + ": expected a number, not " + files::in_quotes(word));
+            }
+            all.values.push_back(value);
+            all.places.push_back({line.number, from + 1});
+            from = text.find_first_not_of(kBetweenNumbers, end);
+        }
+        all.end = {line.number, text.size() + 1};
     }
 
     std::string name_;
-    std::map<std::string, Lines> sections_;
+    std::map<std::string, Section> sections_;
 };
 
-/// Whole numbers of at least 1 and at most a thousand.
+/// Refuses a section of another size than `count`.
+void expect_count(const Sections& in, const Numbers& numbers, const std::string& section, std::size_t count)
+{
+    if (numbers.values.size() != count) {
+        in.refuse(numbers.place(count), section + ": expected " + std::to_string(count) + " numbers, not " +
+                                            std::to_string(numbers.values.size()));
+    }
+}
+
+/// The numbers of bins of the first `count` variables.
 std::vector<std::size_t> bins_of(const Sections& in, const std::string& section, std::size_t count)
 {
-    const std::vector<double> values = in.numbers(section);
-    const bool good = values.size() == count && std::all_of(values.begin(), values.end(), [](double v) {
-                          return v >= 1.0 && v <= 1000.0 && v == std::floor(v);
-                      });
-    if (!good) {
-        in.refuse(section + " does not have a number of bins for each variable");
+    constexpr double kMost = 1000.0;
+    const Numbers bins = in.numbers(section);
+    expect_count(in, bins, section, count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const double value = bins.values[i];
+        if (!(value >= 1.0 && value <= kMost && value == std::floor(value))) {
+            in.refuse(bins.place(i), section + ": expected a number of bins, a whole one from 1 to 1000");
+        }
     }
-    return {values.begin(), values.end()};
+    return {bins.values.begin(), bins.values.end()};
 }
 
 }  // namespace
@@ -121,11 +189,14 @@ EncounterModel EncounterModel::read(std::istream& in, const std::string& name)
     const Sections sections(in, name);
     EncounterModel model;
     const auto network = [&](const std::string& suffix, std::size_t from, std::size_t count) {
-        const std::vector<double> graph = sections.numbers("G_" + suffix);
+        const Numbers graph = sections.numbers("G_" + suffix);
+        expect_count(sections, graph, "G_" + suffix, count * count);
         const std::vector<std::size_t> bins = bins_of(sections, "r_" + suffix, count);
-        const std::vector<double> counts = sections.numbers("N_" + suffix);
-        if (graph.size() != count * count) {
-            sections.refuse("G_" + suffix + " is not square");
+        const Numbers counts = sections.numbers("N_" + suffix);
+        for (std::size_t i = 0; i < counts.values.size(); ++i) {
+            if (counts.values[i] < 0.0) {
+                sections.refuse(counts.place(i), "N_" + suffix + ": a count is not below 0");
+            }
         }
         std::vector<Node> nodes;
         std::size_t at = 0;
@@ -134,32 +205,30 @@ EncounterModel EncounterModel::read(std::istream& in, const std::string& name)
             node.bins = bins[j];
             std::size_t size = bins[j];
             for (std::size_t i = 0; i < count; ++i) {
-                if (graph[i * count + j] != 0.0) {
+                if (graph.values[i * count + j] != 0.0) {
                     node.parents.push_back(i);
                     node.parent_bins.push_back(bins[i]);
                     size *= bins[i];
                 }
             }
-            if (at + size > counts.size()) {
-                sections.refuse("N_" + suffix + " has too few counts");
+            if (at + size > counts.values.size()) {
+                sections.refuse(counts.end, "N_" + suffix + ": has too few counts");
             }
-            node.counts.assign(counts.begin() + static_cast<std::ptrdiff_t>(at),
-                               counts.begin() + static_cast<std::ptrdiff_t>(at + size));
-            if (std::any_of(node.counts.begin(), node.counts.end(), [](double c) { return c < 0.0; })) {
-                sections.refuse("N_" + suffix + " has a negative count");
-            }
+            node.counts.assign(counts.values.begin() + static_cast<std::ptrdiff_t>(at),
+                               counts.values.begin() + static_cast<std::ptrdiff_t>(at + size));
             at += size;
             nodes.push_back(std::move(node));
         }
-        if (at != counts.size()) {
-            sections.refuse("N_" + suffix + " has too many counts");
+        if (at != counts.values.size()) {
+            sections.refuse(counts.place(at), "N_" + suffix + ": has too many counts");
         }
         return nodes;
     };
     const std::vector<std::string> labels = sections.labels("labels_initial");
     const std::vector<std::string> followers = sections.labels("labels_transition");
     if (followers.size() < labels.size()) {
-        sections.refuse("the dynamic network has fewer variables than the initial one");
+        sections.refuse(sections.heading("labels_transition"),
+                        "labels_transition: expected the variables of labels_initial and those that follow them");
     }
     model.initial_ = network("initial", 0, labels.size());
     model.next_ = network("transition", labels.size(), followers.size());
@@ -167,7 +236,7 @@ EncounterModel EncounterModel::read(std::istream& in, const std::string& name)
     for (std::size_t i = 0; i < kVariables; ++i) {
         const auto found = std::find(labels.begin(), labels.end(), kNames[i]);
         if (found == labels.end()) {
-            sections.refuse(std::string("no variable ") + kNames[i]);
+            sections.refuse(sections.heading("labels_initial"), std::string("no variable ") + kNames[i]);
         }
         model.index_[i] = static_cast<std::size_t>(found - labels.begin());
     }
@@ -176,36 +245,45 @@ EncounterModel EncounterModel::read(std::istream& in, const std::string& name)
         const auto found = std::find(labels.begin(), labels.end(), plain);
         if (found == labels.end() || model.next_[j - labels.size()].bins !=
                                          model.initial_[static_cast<std::size_t>(found - labels.begin())].bins) {
-            sections.refuse(followers[j] + " follows no variable of as many bins");
+            sections.refuse(sections.heading("labels_transition"),
+                            files::in_quotes(followers[j]) + " follows no variable of as many bins");
         }
         model.followed_.push_back(static_cast<std::size_t>(found - labels.begin()));
     }
-    const Lines& boundaries = sections.lines("boundaries");
+    const std::vector<Line>& boundaries = sections.lines("boundaries");
     if (boundaries.size() != labels.size()) {
-        sections.refuse("there are not as many lines of boundaries as variables");
+        const Place at = boundaries.size() > labels.size() ? Place{boundaries[labels.size()].number, 1}
+                                                           : sections.heading("boundaries");
+        sections.refuse(at, "boundaries: expected a line for each of " + std::to_string(labels.size()) + " variables");
     }
     for (std::size_t i = 0; i < labels.size(); ++i) {
-        const bool numbered = boundaries[i].starts_with("*");
-        std::vector<double> edges = numbered ? std::vector<double>{} : sections.of(boundaries[i], "boundaries");
-        if (!numbered && (edges.size() != model.initial_[i].bins + 1 || !std::is_sorted(edges.begin(), edges.end()))) {
-            sections.refuse("the bins of " + labels[i] + " do not have one edge more than there are bins");
+        Numbers edges;
+        if (!boundaries[i].text.starts_with("*")) {
+            edges = sections.of(boundaries[i], "boundaries");
+            expect_count(sections, edges, "boundaries", model.initial_[i].bins + 1);
+            const auto back = std::is_sorted_until(edges.values.begin(), edges.values.end());
+            if (back != edges.values.end()) {
+                sections.refuse(edges.place(static_cast<std::size_t>(back - edges.values.begin())),
+                                "boundaries: expected an edge that is not below the one before it");
+            }
         }
-        model.edges_.push_back(std::move(edges));
+        model.edges_.push_back(std::move(edges.values));
     }
     for (const std::size_t moving : model.index_) {
         if (model.edges_[moving].empty()) {
-            sections.refuse(labels[moving] + " has no edges");
+            sections.refuse({boundaries[moving].number, 1}, labels[moving] + " has no edges");
         }
     }
-    model.resampled_ = sections.numbers("resample_rates");
-    if (model.resampled_.size() != labels.size()) {
-        sections.refuse("there are not as many resample rates as variables");
+    const Numbers rates = sections.numbers("resample_rates");
+    expect_count(sections, rates, "resample_rates", labels.size());
+    model.resampled_ = rates.values;
+    if (model.order().size() != labels.size()) {
+        sections.refuse(sections.heading("G_initial"), "the initial network has a cycle");
     }
-    static_cast<void>(model.order());
     return model;
 }
 
-/// Parents before their children.
+/// Parents before their children, without those on a cycle and behind it.
 std::vector<std::size_t> EncounterModel::order() const
 {
     std::vector<std::size_t> sorted;
@@ -220,7 +298,7 @@ std::vector<std::size_t> EncounterModel::order() const
             }
         }
         if (sorted.size() == before) {
-            throw std::runtime_error("the initial network of an encounter model has a cycle");
+            break;
         }
     }
     return sorted;

@@ -32,8 +32,8 @@ struct ModelTrack {
 /// Draws tracks of one model.
 class EncounterModel {
 public:
-    /// @throws std::runtime_error, with the file's name: sections missing, other sizes than the networks have, numbers
-    /// that are none, variables that are not known
+    /// @throws std::runtime_error, "file:line:column: what was expected": sections that are missing or come twice,
+    /// other sizes than the networks have, texts in place of numbers, variables that are not known, a cycle
     [[nodiscard]] static EncounterModel load(const std::filesystem::path& file);
     [[nodiscard]] static EncounterModel read(std::istream& in, const std::string& name);
 

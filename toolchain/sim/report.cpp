@@ -336,7 +336,8 @@ std::string run_text(const std::vector<ReportedFlight>& flights, bool machine_in
                    {"units", "metres, seconds, metres per second; x east, y north, z up from home"},
                    {"world_step", to_seconds(kStep)},
                    {"flights", all}};
-    return run.dump();
+    // Names may come from file names, which need not be UTF-8.
+    return run.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 void write_run(const std::filesystem::path& file, const std::vector<ReportedFlight>& flights)
