@@ -24,7 +24,7 @@ struct Document {
     std::string file;  ///< its name
     std::string text;
 
-    /// Refuses what stands at the byte `at`.
+    /// Refuses what is at the byte `at`.
     [[noreturn]] void refuse(std::size_t at, const std::string& what) const
     {
         const std::string_view before = std::string_view(text).substr(0, at);

@@ -23,7 +23,7 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 
 constexpr const char* kBetweenNumbers = " \t";
 
-/// Where something stands, from 1.
+/// Line and column, from 1.
 struct Place {
     std::size_t line = 1;
     std::size_t column = 1;
@@ -34,7 +34,7 @@ struct Line {
     std::string text;
 };
 
-/// The numbers of a section or a line, and where each of them stands.
+/// The numbers of a section or a line, each with its place.
 struct Numbers {
     std::vector<double> values;
     std::vector<Place> places;
@@ -153,12 +153,12 @@ void expect_count(const Sections& in, const Numbers& numbers, const std::string&
 /// The numbers of bins of the first `count` variables.
 std::vector<std::size_t> bins_of(const Sections& in, const std::string& section, std::size_t count)
 {
-    constexpr double kMost = 1000.0;
+    constexpr double kMaxBins = 1000.0;
     const Numbers bins = in.numbers(section);
     expect_count(in, bins, section, count);
     for (std::size_t i = 0; i < count; ++i) {
         const double value = bins.values[i];
-        if (!(value >= 1.0 && value <= kMost && value == std::floor(value))) {
+        if (!(value >= 1.0 && value <= kMaxBins && value == std::floor(value))) {
             in.refuse(bins.place(i), section + ": expected a number of bins, a whole one from 1 to 1000");
         }
     }
