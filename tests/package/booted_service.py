@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Boots a Debian 12 with the package jink in a container, with systemd as its first process, and tries jinkd.service there.
 
-    booted_service.py ROOT
+    booted_service.py ROOT PACKAGE
 
-ROOT: a folder with the packages jink, systemd-sysv and dbus installed. A peer sends an autopilot's HEARTBEAT by UDP
+ROOT: a folder with the packages jink, systemd-sysv and dbus installed. PACKAGE: jink_*.deb. A peer sends an autopilot's HEARTBEAT by UDP
 within the container's network. Tried: refusal of an empty line, start, end by SIGKILL, end by a hang (the watchdog's
-time), reload, what the service may see and write, that it only advises, stop, start at boot. Exit status 77: systemd-nspawn is missing or
+time), reload, what the service may see and write, that it only advises, stop, upgrade, removal, start at boot. Exit status 77: systemd-nspawn is missing or
 cannot boot here. Needs root. Python 3 standard library only.
 """
 import os
@@ -172,14 +172,43 @@ def confined(c):
         check("real-time priority 50", os.sched_getparam(pid).sched_priority == 50)
 
 
+def upgraded(c, package):
+    """PACKAGE over itself restarts a service that runs and starts none that is stopped; removal stops it."""
+    barred = pathlib.Path(c.root) / "usr/sbin/policy-rc.d"  # would keep packages from starting anything
+    policy = barred.read_bytes() if barred.exists() else None
+    barred.unlink(missing_ok=True)
+    c.run("sh", "-c", "cat >/run/jink.deb", data=package.read_bytes())
+
+    def dpkg(what, *arguments):
+        done = c.run("dpkg", *arguments)
+        check(what, done.returncode == 0)
+
+    before = c.pid()
+    dpkg("upgrade of a service that runs", "-i", "/run/jink.deb")
+    check("a new jinkd within 5 s", wait_for(lambda: c.pid() not in (None, before) and runs(c), 5))
+    check("which is heard", c.hears())
+    c.run("systemctl", "stop", "jinkd")
+    dpkg("upgrade of a service that is stopped", "-i", "/run/jink.deb")
+    check("it stays stopped", c.show("ActiveState") == "inactive")
+    c.run("systemctl", "start", "jinkd")
+    check("started again", runs(c))
+    dpkg("removal", "-r", "jink")
+    check("no jinkd runs", c.run("pidof", "jinkd").returncode != 0 and c.show("ActiveState") == "inactive")
+    dpkg("new installation", "-i", "/run/jink.deb")
+    check("neither started nor enabled", c.show("ActiveState") == "inactive" and c.show("UnitFileState") == "disabled")
+    if policy is not None:
+        barred.write_bytes(policy)
+        barred.chmod(0o755)
+
+
 def main():
-    if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
+    if len(sys.argv) != 3 or sys.argv[1].startswith("-"):
         print(__doc__, file=sys.stdout if sys.argv[1:] in (["-h"], ["--help"]) else sys.stderr)
         return 0 if sys.argv[1:] in (["-h"], ["--help"]) else 2
     if not shutil.which("systemd-nspawn"):
         print("systemd-nspawn is not installed: skipped")
         return 77
-    root = pathlib.Path(sys.argv[1])
+    root, package = map(pathlib.Path, sys.argv[1:])
     defaults = root / "etc/default/jinkd"
     with Container(root) as c:
         check("not started by the installation", c.show("ActiveState") == "inactive")
@@ -203,6 +232,9 @@ def main():
         began = time.monotonic()
         c.run("systemctl", "stop", "jinkd")
         check("stop ends well within 5 s", c.show("ActiveState") == "inactive" and c.show("Result") == "success" and time.monotonic() - began < 5.0)
+        c.run("systemctl", "start", "jinkd")
+        check("started for an upgrade", runs(c))
+        upgraded(c, package)
         c.run("systemctl", "enable", "jinkd")
     with Container(root) as c:
         check("started at boot", wait_for(lambda: runs(c), 10))

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tests of what the Debian packages are made of.
 
-    package_test.py unit|service|examples|completion|man_pages|sbom|changelog --build FOLDER --version VERSION
+    package_test.py unit|service|upgrade|examples|completion|man_pages|sbom|changelog --build FOLDER --version VERSION
 """
 import argparse
 import json
@@ -84,6 +84,55 @@ def test_service(build, _):
                    "--params", PARAMS, "--program", build / PROGRAMS["jinkd"], "--state", state)
     print(done.stdout + done.stderr)
     assert done.returncode == 0, "the line of the unit does not start jinkd"
+
+
+def maintainer_scripts(folder):
+    """What debhelper puts into the package's maintainer scripts for the unit, by script."""
+    shutil.copytree(PACKAGING / "debian", folder / "debian")
+    (folder / "debian/changelog").write_text("jink (0) bookworm; urgency=medium\n\n  * .\n\n"
+                                             " -- J <j@jink.invalid>  Thu, 01 Jan 2026 00:00:00 +0000\n", encoding="ascii")
+    line = re.search(r"^\t(dh_installsystemd .*)$", (PACKAGING / "debian/rules").read_text(encoding="utf-8"), re.M)[1]
+    done = run(*line.split(), "--package=jink", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    scripts = {}
+    for name in ("preinst", "postinst", "prerm", "postrm"):
+        parts = [folder / f"debian/.debhelper/generated/jink/{name}.service", folder / f"debian/jink.{name}.debhelper"]
+        scripts[name] = "set -e\n" + "".join(part.read_text(encoding="utf-8") for part in parts if part.exists())
+    return scripts
+
+
+def test_upgrade(_, __):
+    """An upgrade restarts the service, removal stops it, a first installation does not enable it."""
+    if not shutil.which("dh_installsystemd"):
+        skip("debhelper is missing (toolchain/setup/install --for package)")
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        scripts = maintainer_scripts(folder)
+        for program in ("deb-systemd-invoke", "deb-systemd-helper", "systemctl"):
+            file = folder / program
+            # `was-enabled` and `debian-installed` fail: the unit was never enabled.
+            file.write_text(f'#!/bin/sh\necho "{program} $*" >>{folder}/called\n[ {program} != deb-systemd-helper ]\n', encoding="ascii")
+            file.chmod(0o755)
+        (folder / "booted").mkdir()
+
+        def calls(*steps):
+            """What the scripts call in these steps, on a machine that systemd has booted."""
+            (folder / "called").write_text("", encoding="ascii")
+            for script, *arguments in steps:
+                done = run("sh", "-c", scripts[script].replace("/run/systemd/system", f"{folder}/booted"), script, *arguments,
+                           env={**os.environ, "PATH": f"{folder}:{os.environ['PATH']}"})
+                assert done.returncode == 0, done.stderr
+            called = (folder / "called").read_text(encoding="ascii")
+            print(steps, called, sep="\n")
+            assert "deb-systemd-helper enable" not in called, "enabled"
+            return re.findall(r"^deb-systemd-invoke (\S+) jinkd\.service$", called, re.M)
+
+        # deb-systemd-invoke starts no unit that is disabled; chroot_test tries that.
+        assert calls(("preinst", "install"), ("postinst", "configure", "")) in ([], ["start"])
+        # prerm is the old version's, the others are the new one's.
+        assert calls(("prerm", "upgrade", "2"), ("preinst", "upgrade", "1", "2"), ("postrm", "upgrade", "2"),
+                     ("postinst", "configure", "1")) == ["restart"], "an upgrade leaves the old program running, or none"
+        assert calls(("prerm", "remove"), ("postrm", "remove")) == ["stop"], "removal leaves the program running"
 
 
 def test_examples(build, _):
