@@ -51,7 +51,9 @@ void CloudObstacles::add_hit(const Vec3& point) noexcept
         bin.state = is_body && bin.state != State::hit ? State::spoiled : bin.state;
         return;
     }
-    if (view_.is_placed && view_.has_floor && view_.position.z() + point.z() < view_.floor - kFloorSlack) {
+    // Below the floor nothing bounds the flight: what lies at the vehicle's height or above may be in its way.
+    const bool is_below = point.z() < 0.0F && view_.position.z() + point.z() < view_.floor - kFloorSlack;
+    if (view_.is_placed && view_.has_floor && is_below) {
         ++diagnostics_.below_floor;
         bin.state = bin.state == State::unseen ? State::empty : bin.state;
         return;

@@ -17,7 +17,7 @@ struct CloudDiagnostics {
     std::uint64_t nothing = 0;
     std::uint64_t invalid = 0;
     std::uint64_t body = 0;         ///< hits within the own box
-    std::uint64_t below_floor = 0;  ///< hits under the floor, which bounds the flight already
+    std::uint64_t below_floor = 0;  ///< hits under the floor and lower than the vehicle
     std::uint64_t beyond = 0;       ///< hits farther than kReach
     std::uint64_t kept = 0;
     std::uint64_t lost = 0;  ///< rays that the sender sent
@@ -47,6 +47,8 @@ public:
     /// What is farther is not kept [m].
     static constexpr float kReach = 600.0F;
     /// Hits this far below the floor are dropped, no higher ones: the vehicle may have moved since the scan [m].
+    /// Hits no lower than the vehicle's centre are kept: it may fly below the floor. The ground under a vehicle that
+    /// lands, stands or takes off lies lower than its centre, though within its box.
     static constexpr float kFloorSlack = 0.5F;
     /// What is hidden by the own body and no farther from its box than this is not forgotten [m].
     static constexpr float kBodyReach = 0.5F;

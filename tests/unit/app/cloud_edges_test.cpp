@@ -67,6 +67,24 @@ TEST_F(CloudEdges, TheFloorIsHalfAMetreLowerForAScan)
     EXPECT_EQ(count().below_floor, 2U) << "without a place nobody knows";
 }
 
+/// A mission flies below the floor: the floor bounds nothing there, and what lies at the vehicle's height is in its way.
+TEST_F(CloudEdges, BelowTheFloorOnlyWhatIsBelowTheVehicleIsDropped)
+{
+    view.has_floor = true;
+    view.position = Vec3(0.0F, 0.0F, 50.0F);
+    view.floor = 60.0F;
+    EXPECT_EQ(scan({Vec3(20.0F, 0.5F, 4.0F), Vec3(-20.0F, 0.5F, 0.01F)}), 2U);
+    EXPECT_EQ(count().below_floor, 0U);
+    // A landed vehicle's ground lies a landing gear below its centre.
+    forget();
+    EXPECT_EQ(scan({Vec3(3.0F, 0.5F, -0.1F), Vec3(-3.0F, 0.5F, -0.1F), Vec3(20.0F, 0.5F, -0.1F)}), 0U);
+    EXPECT_EQ(count().below_floor, 3U);
+    // Its scan's own height counts.
+    view.stamp = now - 0.4F;
+    view.velocity = Vec3(0.0F, 0.0F, 30.0F);
+    EXPECT_EQ(scan({Vec3(20.0F, 0.5F, -2.4F), Vec3(-20.0F, 0.5F, -2.6F)}), 1U);
+}
+
 TEST_F(CloudEdges, ASurfaceIsAMetreDeepOrThreeTenthsOfItsRange)
 {
     EXPECT_EQ(CloudSurface::patch_depth(0.0F), 1.0F);

@@ -30,11 +30,11 @@ TEST(CoprocessorClouds, HitsBecomeObstaclesAndExpire)
     EXPECT_EQ(f->tick().obstacles, 0);  // OBS_KEEP is a second
 }
 
-TEST(CoprocessorClouds, AWallInTheWayIsAvoided)
+/// 30 m ahead, 6 m wide and high, a metre to the side so that one side is better. Static.
+void fly_past_a_wall(CloudFlight& flight)
 {
-    const auto f = quiet_flight();
+    CloudFlight* const f = &flight;
     std::vector<cloud::RawPoint> wall;
-    // 30 m ahead, 6 m wide and high, a metre to the side so that one side is better. Static.
     const float stands = f->flight.position.y() + 30.0F;
     bool took_over = false;
     for (int i = 0; i < 1500 && f->flight.position.y() < stands + 30.0F; ++i) {
@@ -57,6 +57,24 @@ TEST(CoprocessorClouds, AWallInTheWayIsAvoided)
     }
     EXPECT_TRUE(took_over);
     EXPECT_GT(f->flight.position.y(), stands + 20.0F);
+}
+
+TEST(CoprocessorClouds, AWallInTheWayIsAvoided) { fly_past_a_wall(*quiet_flight()); }
+
+/// A mission downhill of the home position flies below the floor.
+TEST(CoprocessorClouds, AWallInTheWayIsAvoidedBelowTheFloor)
+{
+    const auto f = quiet_flight();
+    HomePosition home;
+    home.latitude = 473'977'420;
+    home.longitude = 85'455'940;
+    home.altitude = 488'000 + 100'000;
+    f->flight.feed(home);
+    f->fly(5);
+    ASSERT_NEAR(f->flight.coprocessor.home().z(), 100.0F, 0.1F);
+    fly_past_a_wall(*f);
+    EXPECT_EQ(f->input.port_diagnostics().hits,
+              f->input.port_diagnostics().kept + f->input.port_diagnostics().below_floor);
 }
 
 TEST(CoprocessorClouds, SinglePointsOfTheLink)
