@@ -6,6 +6,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/file.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -139,6 +140,14 @@ std::size_t TermiosSerialPort::write(std::span<const std::byte> from) noexcept
 OpenStatus TermiosSerialPort::try_open() noexcept
 {
     descriptor_ = ::open(path_.data(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    // Two programs on a line would each get a part of its bytes. The lock ends with the descriptor; TIOCEXCL would
+    // outlive a program that is killed, and root passes it.
+    if (descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+        ++health_.open_failures;
+        (void)::close(descriptor_);  // not release(): the bytes that it would discard are the other program's
+        descriptor_ = -1;
+        return OpenStatus::access_denied;
+    }
     const OpenStatus status = descriptor_ < 0 ? cause_of(errno) : configure();
     if (status != OpenStatus::ok) {
         ++health_.open_failures;

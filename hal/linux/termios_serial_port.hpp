@@ -20,13 +20,16 @@ enum class OpenStatus : std::uint8_t {
     bad_path,             ///< empty, or kMaxDevicePath or more characters
     bad_baud,             ///< zero
     no_device,            ///< no such node, or no device behind the node
-    access_denied,        ///< permissions, or held exclusively by another program
+    access_denied,        ///< permissions, or held by another program
     not_a_serial_device,  ///< exists, but is not a terminal
     settings_refused,     ///< the driver does not support 8N1 at this rate
     failed,               ///< any other error of the system
 };
 
 /// Serial device or pty of Linux: raw, 8 data bits, no parity, 1 stop bit, no flow control, any baud rate.
+///
+/// While open the device node is locked by flock(): a second port, and any program that asks for the lock, does not
+/// open it.
 ///
 /// A device that vanishes (unplugged, other end of a pty closed) makes the port `lost`. `service()` then tries to open
 /// the same path again, first at once and then once per retry period, until it succeeds or `close()` is called. Bytes

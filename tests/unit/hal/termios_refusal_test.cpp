@@ -70,6 +70,28 @@ TEST(TermiosSerialPort, TellsThatPermissionIsMissing)
     EXPECT_EQ(status, OpenStatus::access_denied);
 }
 
+TEST(TermiosSerialPort, LeavesADeviceToTheProgramThatHasIt)
+{
+    const Pty peer;
+    TermiosSerialPort first;
+    TermiosSerialPort second;
+    ASSERT_EQ(first.open(peer.path(), 57'600, kRetry), OpenStatus::ok);
+    const std::array<std::byte, 3> bytes{std::byte{1}, std::byte{2}, std::byte{3}};
+    ASSERT_EQ(peer.write(bytes.data(), bytes.size()), bytes.size());
+    EXPECT_EQ(second.open(peer.path(), 115'200, kRetry), OpenStatus::access_denied);
+    EXPECT_EQ(second.health().state, PortState::lost);
+    std::array<std::byte, 8> got{};
+    EXPECT_EQ(first.read(got), bytes.size()) << "the refused one discards nothing";
+    termios2 settings{};
+    ASSERT_EQ(test::kernel_ioctl(first.descriptor(), TCGETS2, &settings), 0);
+    EXPECT_EQ(settings.c_ospeed, 57'600U) << "nor does it change the rate";
+    second.service(0);
+    EXPECT_EQ(second.health().state, PortState::lost);
+    first.close();
+    second.service(2 * kRetry);
+    EXPECT_EQ(second.health().state, PortState::open);
+}
+
 TEST(TermiosSerialPort, RefusesADriverThatDoesNotTakeTheSettings)
 {
     const Pty peer;
