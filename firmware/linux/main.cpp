@@ -61,8 +61,11 @@ void go_realtime(int priority)
 {
     sched_param param{};
     param.sched_priority = priority;
-    if (sched_setscheduler(0, SCHED_FIFO, &param) != 0 || mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
+    if (sched_setscheduler(0, SCHED_FIFO, &param) != 0) {
         complain_now(std::string("no real-time priority: ") + std::strerror(errno));
+    }
+    if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
+        complain_now(std::string("memory is not locked: ") + std::strerror(errno));
     }
 }
 
@@ -359,7 +362,8 @@ int main(int argc, char** argv)
 
     ignore_what_outputs_raise();
     catch_signals();
-    if (!host::check_names(cli, options)) {
+    host::name_stores(options);
+    if (!host::check_names(cli, options) || !host::check_files(options)) {
         return kRefused;
     }
     files::Complaints complaints;
@@ -369,14 +373,6 @@ int main(int argc, char** argv)
         return kRefused;
     }
     const app::Parameters initial = *parameters;
-    if (options.state_file.empty() && !options.param_file.empty()) {
-        options.state_file = options.param_file + ".state";
-    }
-    if (!options.state_file.empty()) {
-        options.signing.store = options.state_file + ".signing";
-    } else if (!options.signing.key.empty()) {
-        options.signing.store = options.signing.key + ".state";
-    }
     std::optional<files::MapTables> map;
     if (!options.map_file.empty()) {
         map = host::load_map(options.map_file);

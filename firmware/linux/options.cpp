@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "firmware/app/work_rate.hpp"
+#include "firmware/linux/param_store.hpp"
 #include "firmware/linux/ports.hpp"
 
 namespace jink::host {
@@ -103,6 +104,40 @@ bool check_names(const CLI::App& cli, const Options& options)
     }
     if (!std::isfinite(options.status_period)) {
         complain_now("--status-period: seconds from 0 to 3600 are needed");
+        return false;
+    }
+    return true;
+}
+
+void name_stores(Options& options)
+{
+    if (options.state_file.empty() && !options.param_file.empty()) {
+        options.state_file = options.param_file + ".state";
+    }
+    if (!options.state_file.empty()) {
+        options.signing.store = options.state_file + ".signing";
+    } else if (!options.signing.key.empty()) {
+        options.signing.store = options.signing.key + ".state";
+    }
+}
+
+bool check_files(const Options& options)
+{
+    const std::vector<std::string> inputs{options.param_file, options.vehicle_file, options.airspace_file,
+                                          options.map_file,   options.signing.key,  options.page.file};
+    const std::vector<std::string> outputs{options.state_file, options.signing.store, options.summary};
+    if (const auto same = files::find_overwritten(inputs, outputs)) {
+        complain_now(same->output + ": cannot be written: it is the same file as " + same->other);
+        return false;
+    }
+    std::string fault;
+    const std::optional<LinkName> link = split_link(options.link, fault);
+    std::string line;
+    std::string cloud;
+    std::uint32_t baud = 0;
+    if (split_device(link && link->serial ? link->where : options.serial, line, baud) &&
+        split_device(options.cloud, cloud, baud) && files::is_same_file(line, cloud)) {
+        complain_now("--cloud " + options.cloud + ": this device is the autopilot's line");
         return false;
     }
     return true;

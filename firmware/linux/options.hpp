@@ -44,5 +44,10 @@ void add_options(CLI::App& cli, Options& options);
 /// What CLI11 does not check: a line to the autopilot, and no empty names. False, with a message, where jinkd must not
 /// start.
 [[nodiscard]] bool check_names(const CLI::App& cli, const Options& options);
+/// Names the files that jinkd keeps beside others: the state file where there is no option, and the signing state.
+void name_stores(Options& options);
+/// False, with a message, where a file that jinkd writes is one of those that it reads, or where two are one file, and
+/// where the cloud line is the autopilot's device. Opens nothing.
+[[nodiscard]] bool check_files(const Options& options);
 
 }  // namespace jink::host

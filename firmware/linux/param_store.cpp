@@ -153,6 +153,36 @@ std::string replace_file(const std::string& path, std::string_view text, FileAcc
     return sync_folder(target) ? std::string{} : reason("the folder cannot be synchronised");
 }
 
+bool is_same_file(const std::string& a, const std::string& b)
+{
+    namespace fs = std::filesystem;
+    const auto whole_path = [](const std::string& name) {
+        std::error_code error;
+        return fs::weakly_canonical(fs::absolute(name, error), error);
+    };
+    std::error_code error;
+    return !a.empty() && !b.empty() && (fs::equivalent(a, b, error) || whole_path(a) == whole_path(b));
+}
+
+std::optional<Overwritten> find_overwritten(const std::vector<std::string>& inputs,
+                                            const std::vector<std::string>& outputs)
+{
+    std::vector<std::string> taken = inputs;
+    for (const std::string& output : outputs) {
+        std::error_code error;
+        if (output.empty() || std::filesystem::is_other(output, error)) {
+            continue;
+        }
+        const auto other = std::find_if(taken.begin(), taken.end(),
+                                        [&](const std::string& name) { return is_same_file(output, name); });
+        if (other != taken.end()) {
+            return Overwritten{output, *other};
+        }
+        taken.push_back(output);
+    }
+    return std::nullopt;
+}
+
 StateLoad apply_state(std::string_view text, const std::string& file, app::Parameters& parameters,
                       Complaints& complaints)
 {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "firmware/linux/param_file.hpp"
 
@@ -29,6 +30,18 @@ enum class FileAccess : unsigned { everyone_reads = 0644, owner_only = 0600 };
 /// A device or a pipe is written into, where everyone may read. @return the error; empty on success
 [[nodiscard]] std::string replace_file(const std::string& path, std::string_view text,
                                        FileAccess access = FileAccess::everyone_reads);
+
+/// Whether two names lead to one file or device, also where the file does not exist yet. False for an empty name.
+[[nodiscard]] bool is_same_file(const std::string& a, const std::string& b);
+
+struct Overwritten {
+    std::string output;
+    std::string other;  ///< the input or the earlier output that is the same file
+};
+/// The first output that is the same file as an input or an earlier output; nothing if there is none. Empty names are
+/// passed over, and outputs that are devices or pipes.
+[[nodiscard]] std::optional<Overwritten> find_overwritten(const std::vector<std::string>& inputs,
+                                                          const std::vector<std::string>& outputs);
 
 struct StateLoad {
     std::size_t taken = 0;

@@ -70,6 +70,86 @@ TEST(Jinkd, RefusesWhatItCannotUse)
     EXPECT_NE(said.find("bad.param:2"), std::string::npos) << said;
 }
 
+TEST(Jinkd, RefusesToWriteOverAFileOfItsUser)
+{
+    Scratch scratch;
+    Cable cable;
+    const auto path = [&](const char* name) { return (scratch / name).string(); };
+    const std::vector<const char*> names{"my.param", "vehicle.yaml",    "areas.yaml",
+                                         "map",      "a.state.signing", "page.html"};
+    for (const char* name : names) {
+        std::ofstream(path(name)) << "# the user's\n";
+    }
+    fs::create_symlink("my.param", path("link"));
+    fs::create_hard_link(path("my.param"), path("hard"));
+    const std::string param = path("my.param");
+    const std::vector<std::vector<std::string>> cases{
+        {"--params", param, "--state", param},
+        {"--params", param, "--state", path("link")},
+        {"--params", path("link"), "--state", path("hard")},
+        {"--params", param, "--state", path("./my.param")},
+        {"--params", param, "--summary", param},
+        {"--params", param, "--summary", param + ".state"},
+        {"--state", path("new"), "--summary", path("./new")},
+        {"--state", path("new"), "--summary", path("new.signing")},
+        {"--vehicle", path("vehicle.yaml"), "--summary", path("vehicle.yaml")},
+        {"--airspace", path("areas.yaml"), "--state", path("areas.yaml")},
+        {"--map", path("map"), "--summary", path("map")},
+        {"--signing-key", path("a.state.signing"), "--state", path("a.state")},
+        {"--page", "15999", "--page-file", path("page.html"), "--summary", path("page.html")},
+    };
+    for (std::vector<std::string> arguments : cases) {
+        arguments.insert(arguments.begin(), {"--serial", cable.path()});
+        Daemon daemon(arguments, scratch / "out");
+        EXPECT_EQ(daemon.wait(kPatience), 2) << testing::PrintToString(arguments);
+        const std::string said = text_of(scratch / "out");
+        EXPECT_NE(said.find("cannot be written: it is the same file as"), std::string::npos) << said;
+        for (const char* name : names) {
+            EXPECT_EQ(text_of(scratch / name), "# the user's\n") << testing::PrintToString(arguments);
+        }
+    }
+    EXPECT_FALSE(cable.heartbeat(milliseconds(50))) << "nothing is opened before";
+}
+
+TEST(Jinkd, RefusesTheAutopilotsDeviceAsCloudLine)
+{
+    Scratch scratch;
+    Cable cable;
+    fs::create_symlink(cable.path(), scratch / "port");
+    for (const std::vector<std::string>& line : {std::vector<std::string>{"--serial", cable.path()},
+                                                 {"--serial", cable.path() + ":57600"},
+                                                 {"--link", "serial:" + cable.path()}}) {
+        for (const std::string& cloud : {cable.path(), cable.path() + ":115200", (scratch / "port").string()}) {
+            Daemon daemon({line[0], line[1], "--cloud", cloud}, scratch / "out");
+            EXPECT_EQ(daemon.wait(kPatience), 2) << line[1] << " " << cloud;
+            EXPECT_NE(text_of(scratch / "out").find("--cloud " + cloud + ": this device is the autopilot's line"),
+                      std::string::npos)
+                << text_of(scratch / "out");
+        }
+    }
+}
+
+TEST(Jinkd, LeavesADeviceToTheDaemonThatHasIt)
+{
+    Scratch scratch;
+    Cable cable;
+    Daemon first({"--serial", cable.path(), "--summary", (scratch / "summary.json").string()}, scratch / "first");
+    ASSERT_TRUE(cable.heartbeat(kPatience));
+    Daemon second({"--serial", cable.path()}, scratch / "second");
+    const auto end = Clock::now() + kPatience;
+    while (text_of(scratch / "second").find("held by another program; going on trying") == std::string::npos &&
+           Clock::now() < end) {
+        EXPECT_TRUE(cable.heartbeat(kPatience)) << "of the first";
+    }
+    EXPECT_LT(Clock::now(), end) << text_of(scratch / "second");
+    first.signal(SIGKILL);
+    first.wait(kPatience);
+    cable.drain();
+    EXPECT_TRUE(cable.heartbeat(kPatience)) << "the second takes over";
+    second.signal(SIGTERM);
+    EXPECT_EQ(second.wait(kPatience), 0);
+}
+
 TEST(Jinkd, SaysThatAStateFileCannotBeOpened)
 {
     Scratch scratch;

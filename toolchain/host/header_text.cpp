@@ -97,17 +97,9 @@ void write_whole(const std::string& command, const std::string& file, const std:
     }
 }
 
-/// Also of a file that does not exist yet.
-static std::filesystem::path whole_path(const std::string& name)
-{
-    std::error_code error;
-    return std::filesystem::weakly_canonical(std::filesystem::absolute(name, error), error);
-}
-
 void check_outputs(const std::string& command, const std::vector<std::string>& inputs,
                    const std::vector<std::string>& outputs)
 {
-    std::vector<std::string> taken = inputs;
     for (const std::string& output : outputs) {
         std::error_code error;
         const std::filesystem::path folder = std::filesystem::path(output).parent_path();
@@ -120,13 +112,9 @@ void check_outputs(const std::string& command, const std::vector<std::string>& i
                    output + ": cannot be opened: " +
                        (std::filesystem::is_directory(output, error) ? "it is a folder" : "its folder does not exist"));
         }
-        for (const std::string& other : taken) {
-            if (!other.empty() &&
-                (std::filesystem::equivalent(output, other, error) || whole_path(output) == whole_path(other))) {
-                refuse(command, output + ": cannot be written: it is the same file as " + other);
-            }
-        }
-        taken.push_back(output);
+    }
+    if (const auto same = files::find_overwritten(inputs, outputs)) {
+        refuse(command, same->output + ": cannot be written: it is the same file as " + same->other);
     }
 }
 
