@@ -3,47 +3,53 @@
 
 #include <array>
 #include <atomic>
+#include <cstdint>
 
 namespace jink::c_interface {
 namespace {
 
+/// Place of a session. Its generation counts the sessions that have left it, from 1 on: no handle is null.
+struct Place {
+    std::atomic<Session*> session{nullptr};
+    std::atomic<std::uintptr_t> generation{1};
+};
+
 // Global because a handle has to be known as one before it is used.
-std::array<std::atomic<Session*>, JINK_MAX_HANDLES>
-    sessions{};  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+std::array<Place, JINK_MAX_HANDLES> places{};  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+
+std::uintptr_t number_of(const jink_coprocessor* handle) noexcept { return reinterpret_cast<std::uintptr_t>(handle); }
+
+Place& place_of(const jink_coprocessor* handle) noexcept { return places[number_of(handle) % places.size()]; }
+
+std::uintptr_t generation_of(const jink_coprocessor* handle) noexcept { return number_of(handle) / places.size(); }
 
 }  // namespace
 
-bool enter(Session* session) noexcept
+jink_coprocessor* enter(Session* session) noexcept
 {
-    for (std::atomic<Session*>& place : sessions) {
+    for (std::size_t i = 0; i < places.size(); ++i) {
         Session* none = nullptr;
-        if (place.compare_exchange_strong(none, session)) {
-            return true;
+        if (places[i].session.compare_exchange_strong(none, session)) {
+            return reinterpret_cast<jink_coprocessor*>(places[i].generation.load() * places.size() + i);
         }
     }
-    return false;
+    return nullptr;
 }
 
 Session* session_of(const jink_coprocessor* handle) noexcept
 {
-    for (const std::atomic<Session*>& place : sessions) {
-        Session* const session = place.load();
-        if (session != nullptr && handle_of(session) == handle) {
-            return session;
-        }
-    }
-    return nullptr;
+    const Place& place = place_of(handle);
+    return place.generation.load() == generation_of(handle) ? place.session.load() : nullptr;
 }
 
 Session* leave(const jink_coprocessor* handle) noexcept
 {
-    for (std::atomic<Session*>& place : sessions) {
-        Session* session = place.load();
-        if (session != nullptr && handle_of(session) == handle && place.compare_exchange_strong(session, nullptr)) {
-            return session;
-        }
-    }
-    return nullptr;
+    Place& place = place_of(handle);
+    std::uintptr_t generation = generation_of(handle);
+    // The generation first: once the place is free, the next session may enter it.
+    return session_of(handle) != nullptr && place.generation.compare_exchange_strong(generation, generation + 1)
+               ? place.session.exchange(nullptr)
+               : nullptr;
 }
 
 }  // namespace jink::c_interface

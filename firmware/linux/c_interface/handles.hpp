@@ -3,21 +3,18 @@
 
 #include "firmware/linux/c_interface/session.hpp"
 
-// The handles that exist, so that a destroyed or made-up one is refused instead of used.
+// The handles that exist, so that a destroyed or made-up one is refused instead of used. A handle is no address: it is
+// the number of a place and how many sessions were in that place before. A handle comes again only after 2^58 sessions
+// in its place, on a processor of 32 bits after 2^26.
 
 namespace jink::c_interface {
 
-/// False: JINK_MAX_HANDLES exist. Safe from any thread, as are the others.
-[[nodiscard]] bool enter(Session* session) noexcept;
-/// The session of a handle; nullptr where the handle is none. O(JINK_MAX_HANDLES).
+/// The handle of a new session; nullptr: JINK_MAX_HANDLES exist. Safe from any thread, as are the others.
+[[nodiscard]] jink_coprocessor* enter(Session* session) noexcept;
+/// The session of a handle; nullptr where the handle is none.
 [[nodiscard]] Session* session_of(const jink_coprocessor* handle) noexcept;
 /// The same, and the handle is none from now on.
 [[nodiscard]] Session* leave(const jink_coprocessor* handle) noexcept;
-
-[[nodiscard]] inline jink_coprocessor* handle_of(Session* session) noexcept
-{
-    return reinterpret_cast<jink_coprocessor*>(session);
-}
 
 /// The session of a call's handle.
 /// @param pointers  further ones that must not be null; they are checked first

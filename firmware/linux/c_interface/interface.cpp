@@ -53,14 +53,13 @@ jink_result jink_create(std::uint32_t abi, const jink_options* options, jink_cop
     if (session == nullptr) {
         return JINK_ERROR_MEMORY;
     }
-    const jink_result result = !session->has_time_for_plans() ? JINK_ERROR_OPTION
-                               : !c_interface::enter(session) ? JINK_ERROR_TOO_MANY
-                                                              : JINK_OK;
-    if (result != JINK_OK) {
+    const bool has_time = session->has_time_for_plans();
+    jink_coprocessor* const handle = has_time ? c_interface::enter(session) : nullptr;
+    if (handle == nullptr) {
         delete session;
-        return result;
+        return has_time ? JINK_ERROR_TOO_MANY : JINK_ERROR_OPTION;
     }
-    *created = c_interface::handle_of(session);
+    *created = handle;
     return JINK_OK;
 }
 

@@ -73,6 +73,20 @@ TEST(CInterfaceHandle, ADestroyedOrMadeUpHandleIsRefused)
     EXPECT_EQ(jink_step(other.get(), 1), JINK_OK);
 }
 
+TEST(CInterfaceHandle, ADestroyedHandleStaysRefusedWhileOthersComeAndGo)
+{
+    std::vector<jink_coprocessor*> gone;
+    for (int i = 0; i < 300; ++i) {
+        Handle handle = create();
+        for (jink_coprocessor* const old : gone) {
+            ASSERT_EQ(jink_step(old, 1), JINK_ERROR_HANDLE) << "after " << i << " others";
+            jink_destroy(old);
+        }
+        ASSERT_EQ(jink_step(handle.get(), 1), JINK_OK) << "a destroyed handle has destroyed another";
+        gone.push_back(handle.get());
+    }
+}
+
 TEST(CInterfaceHandle, NoMoreThanTheStatedNumberOfHandles)
 {
     std::vector<Handle> handles;
