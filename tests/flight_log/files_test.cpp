@@ -5,6 +5,8 @@
 #include <atomic>
 #include <cerrno>
 #include <condition_variable>
+#include <cstdlib>
+#include <filesystem>
 #include <mutex>
 #include <thread>
 
@@ -250,6 +252,34 @@ TEST(LogFiles, AfterAFullDiskTheRunIsStillComplete)
     }
     EXPECT_TRUE(first.end() == ulog::End::cut || first.end() == ulog::End::complete);
     EXPECT_TRUE(replay_all(store).is_identical());
+}
+
+TEST(LogFiles, ADeletedFileIsCountedAndFollowedByANewOne)
+{
+    std::string folder = (std::filesystem::temp_directory_path() / "jink_log_XXXXXX").string();
+    ASSERT_NE(::mkdtemp(folder.data()), nullptr);
+    LogFiles files({folder, 64U << 20U, 10}, definitions_of(plain_setup()), std::make_unique<PosixDisk>());
+    const std::size_t piece = whole_messages(flown().data(), 3'000);
+    const auto write = [&](std::int64_t now) {
+        files.take(flown().data().first(piece));
+        files.work(now, false);
+    };
+    write(LogFiles::kSyncPeriod);
+    ASSERT_EQ(files.failures(), 0U);
+    ASSERT_EQ(files.files(), 1U);
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        std::filesystem::remove(entry.path());
+    }
+    const std::int64_t deleted = 2 * LogFiles::kSyncPeriod;
+    write(deleted);
+    EXPECT_EQ(files.failures(), 1U);
+    EXPECT_EQ(files.take_news(), ENOENT);
+    write(deleted + LogFiles::kRetry);
+    files.work(deleted + LogFiles::kRetry, true);
+    EXPECT_EQ(files.files(), 2U);
+    EXPECT_EQ(files.failures(), 1U);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
+    std::filesystem::remove_all(folder);
 }
 
 TEST(LogFiles, AreSynchronisedAboutOnceASecond)

@@ -2,6 +2,7 @@
 #include "firmware/linux/flight_log/disk.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -30,7 +31,14 @@ int PosixDisk::write(std::span<const std::byte> bytes, std::size_t& written)
     return 0;
 }
 
-int PosixDisk::sync() { return ::fdatasync(file_) == 0 ? 0 : errno; }
+int PosixDisk::sync()
+{
+    struct stat status {};
+    if (::fdatasync(file_) != 0 || ::fstat(file_, &status) != 0) {
+        return errno;
+    }
+    return status.st_nlink == 0 ? ENOENT : 0;
+}
 
 void PosixDisk::close()
 {

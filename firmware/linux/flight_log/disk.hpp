@@ -17,7 +17,7 @@ public:
     [[nodiscard]] virtual int create(const std::string& path) = 0;
     /// @param written  number of bytes written, also on an error
     [[nodiscard]] virtual int write(std::span<const std::byte> bytes, std::size_t& written) = 0;
-    /// Waits until the data are on the medium.
+    /// Waits until the data are on the medium. ENOENT where the file was deleted: what is written goes nowhere.
     [[nodiscard]] virtual int sync() = 0;
     virtual void close() = 0;
     virtual void remove(const std::string& path) = 0;
