@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "firmware/linux/airspace_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/reach/cylinder.hpp"
@@ -225,6 +226,18 @@ std::optional<std::vector<app::Constraint>> read_airspace_file(const std::filesy
 {
     const std::optional<YAML::Node> root = load_yaml(path, complaints);
     return root ? read_airspace(*root, path.string(), now, complaints) : std::nullopt;
+}
+
+std::string areas_text(const std::string& file, const std::vector<app::Constraint>& areas, TimePoint now)
+{
+    const auto expired =
+        std::count_if(areas.begin(), areas.end(), [&](const app::Constraint& area) { return now > area.ends; });
+    const auto closed = static_cast<std::ptrdiff_t>(areas.size()) - expired;
+    std::string text = file + ": " + std::to_string(closed) + (closed == 1 ? " area is closed" : " areas are closed");
+    if (expired > 0) {
+        text += ", " + std::to_string(expired) + (expired == 1 ? " has expired" : " have expired");
+    }
+    return text;
 }
 
 }  // namespace jink::files

@@ -29,4 +29,7 @@ read_airspace_file(const std::filesystem::path& path, const BothClocks& now, Com
 [[nodiscard]] std::optional<std::vector<app::Constraint>>
 parse_airspace(const std::string& text, const std::string& file, const BothClocks& now, Complaints& complaints);
 
+/// "FILE: 3 areas are closed", and how many have expired, for the user.
+[[nodiscard]] std::string areas_text(const std::string& file, const std::vector<app::Constraint>& areas, TimePoint now);
+
 }  // namespace jink::files

@@ -204,7 +204,8 @@ void Background::Shared::read_airspace()
     ::clock_gettime(CLOCK_REALTIME, &t);
     const double unix_seconds = static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec) * 1e-9;
     files::Complaints complaints;
-    auto areas = files::read_airspace_file(wanted.airspace, {unix_seconds, TimePoint{clock.now_us()}}, complaints);
+    const TimePoint now{clock.now_us()};
+    auto areas = files::read_airspace_file(wanted.airspace, {unix_seconds, now}, complaints);
     for (const files::Complaint& complaint : complaints) {
         complain(files::to_string(complaint));
     }
@@ -213,7 +214,7 @@ void Background::Shared::read_airspace()
         ++reload_failures;
         return;
     }
-    complain(wanted.airspace + ": " + std::to_string(areas->size()) + " areas are closed");
+    complain(files::areas_text(wanted.airspace, *areas, now));
     delete ready.exchange(new Areas(std::move(*areas)));
 }
 

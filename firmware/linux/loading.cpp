@@ -31,7 +31,7 @@ bool load_airspace(const std::string& file, hal::SystemClock& clock, app::Coproc
         if (recorder != nullptr) {
             recorder->areas(*constraints, now);
         }
-        complain_now(file + ": " + std::to_string(constraints->size()) + " areas are closed");
+        complain_now(files::areas_text(file, *constraints, now));
     }
     return constraints.has_value();
 }

@@ -124,4 +124,19 @@ TEST(AirspaceFile, WhatIsWrongIsNamedByItsLine)
     expect("frame: global\nareas:\n  - {polygon: [[0, 0], [20, 0], [0, 20]], bottom: 1, top: 9}\n", "no area", 3);
 }
 
+TEST(AirspaceFile, TheUserReadsHowManyAreClosedAndHowManyHaveExpired)
+{
+    Complaints complaints;
+    const auto areas =
+        read(kCircle + "}\n" + "  - {centre: [0, 0], radius: 5, bottom: 1, top: 9, until: 1700000000}\n" +
+                 "  - {centre: [9, 0], radius: 5, bottom: 1, top: 9, until: 1800000000}\n" +
+                 "  - {centre: [9, 9], radius: 5, bottom: 1, top: 9, until: 1800000007}\n",
+             complaints);
+    ASSERT_TRUE(areas) << test::all_of(complaints);
+    EXPECT_EQ(areas_text("a.yaml", *areas, kNow.own), "a.yaml: 3 areas are closed, 1 has expired");
+    const TimePoint later{kNow.own.us + 8'000'000};
+    EXPECT_EQ(areas_text("a.yaml", *areas, later), "a.yaml: 1 area is closed, 3 have expired");
+    EXPECT_EQ(areas_text("a.yaml", {}, later), "a.yaml: 0 areas are closed");
+}
+
 }  // namespace
