@@ -19,6 +19,8 @@ constexpr Seconds kConflictOver = 5.0F;
 constexpr Seconds kChoicePeriod = 2.0F;
 /// A vehicle counts as not steerable after so many HEARTBEATs: EXTENDED_SYS_STATE and parameters may come later.
 constexpr int kUnsteerableReports = 6;
+/// Place of the last digit of Hex.
+constexpr std::size_t kLastDigit = 7;
 
 }  // namespace
 
@@ -83,8 +85,10 @@ void Telemetry::report_to_autopilot(TimePoint now, const StepReport& report, con
     const bool changed = report.state != heartbeat_.state;
     if (changed && report.state == link::SystemState::critical) {
         ++counts_.faults;
-        Text text;
-        text << "jink: fault " << static_cast<std::uint32_t>(report.faults);
+        Text digits;
+        digits << Hex{report.faults};
+        Text text;  // as the status line of jinkd has it
+        text << "jink: fault 0x" << digits.view().substr(std::min(digits.view().find_first_not_of('0'), kLastDigit));
         outbox.say(link::Severity::critical, text.view());
     }
     if (!heartbeat_.is_sent || changed || now - heartbeat_.at >= kHeartbeatPeriod) {

@@ -109,12 +109,12 @@ TEST(TellingFault, IsSaidOnceByItsBitsAndCounted)
     for (std::uint32_t i = 1; i <= 2; ++i) {
         t->port.state = hal::PortState::lost;
         t->fly(20);
-        EXPECT_EQ(t->said("jink: fault 16"), static_cast<int>(i));
+        EXPECT_EQ(t->said("jink: fault 0x10"), static_cast<int>(i));
         EXPECT_EQ(t->coprocessor.diagnostics().faults, i);
         t->port.state = hal::PortState::open;
         t->fly(20);
     }
-    EXPECT_TRUE(t->said_as(Severity::critical, "jink: fault 16"));
+    EXPECT_TRUE(t->said_as(Severity::critical, "jink: fault 0x10"));
     EXPECT_EQ(t->said("jink: fault"), 2);
     const auto waiting = teller();
     waiting->heartbeats = waiting->own_state = false;
