@@ -72,6 +72,36 @@ void write_bus(std::FILE* f, const app::CanBus& bus)
                  t.transfers_in, t.transfers_out, t.bytes_overwritten, b.tunnel_dropped);
 }
 
+/// What MAVLink's link and its port refused, dropped and lost.
+void write_link(std::FILE* f, const link::mavlink::Endpoint& endpoint, const hal::PortHealth& port)
+{
+    const link::LinkDiagnostics& l = endpoint.diagnostics();
+    const link::mavlink::ParserDiagnostics& p = endpoint.parser_diagnostics();
+    const auto u = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
+    std::fprintf(f,
+                 "  \"mavlink\": {\"not_finite\": %u, \"out_of_range\": %u, \"no_origin\": %u, \"inbox_full\": %u, "
+                 "\"frames_ignored\": %u, \"own_heard\": %u, \"systems_evicted\": %u,\n",
+                 l.not_finite, l.out_of_range, l.no_origin, l.inbox_full, l.frames_ignored, l.own_heard,
+                 l.systems_evicted);
+    std::fprintf(f,
+                 "    \"outbox_full\": %u, \"setpoints_dropped\": %u, \"requests_dropped\": %u, "
+                 "\"heartbeats_dropped\": %u, \"bytes_discarded\": %u, \"rate_requests\": %u, "
+                 "\"rates_refused\": %u,\n",
+                 l.outbox_full, l.setpoints_dropped, l.requests_dropped, l.heartbeats_dropped, l.bytes_discarded,
+                 l.rate_requests, l.rates_refused);
+    std::fprintf(f,
+                 "    \"noise_bytes\": %u, \"incompatible_flags\": %u, \"unknown_message\": %u, \"too_short\": %u, "
+                 "\"too_long\": %u, \"bad_checksum\": %u, \"cut\": %u,\n    \"lost\": %u, \"repeated\": %u, "
+                 "\"untracked_senders\": %u,\n",
+                 p.noise_bytes, p.incompatible_flags, p.unknown_message, p.too_short, p.too_long, p.bad_checksum, p.cut,
+                 p.lost, p.repeated, p.untracked_senders);
+    std::fprintf(f,
+                 "    \"bytes_in\": %llu, \"bytes_out\": %llu, \"bytes_refused\": %llu, \"line_errors\": %llu, "
+                 "\"overruns\": %llu, \"read_errors\": %llu, \"write_errors\": %llu, \"open_failures\": %llu},\n",
+                 u(port.bytes_in), u(port.bytes_out), u(port.bytes_refused), u(port.line_errors), u(port.overruns),
+                 u(port.read_errors), u(port.write_errors), u(port.open_failures));
+}
+
 void write_image(std::FILE* f, const char* name, const app::CloudDiagnostics& d)
 {
     const auto u = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
@@ -242,6 +272,7 @@ bool StatusLog::write_summary(const std::string& path, const Watched& watched, c
         "  \"bus_states\": %u, \"bus_states_beside\": %u, \"bus_reports_dropped\": %u, \"places_disagree\": %u, "
         "\"near_reported\": %u, \"tables_checked\": %u,\n",
         d.bus_states, d.bus_states_beside, d.bus_reports_dropped, d.places_disagree, d.near_reported, d.tables_checked);
+    write_link(f, watched.endpoint, port);
     const app::ConstraintDiagnostics& a = coprocessor.constraint_diagnostics();
     std::fprintf(f, "  \"areas_reported\": %u, \"areas_refused\": %u, \"areas_merged\": %u, \"areas_grown\": %u,\n",
                  a.reported, a.refused, a.merged, a.grown);

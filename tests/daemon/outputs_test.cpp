@@ -4,6 +4,8 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <limits>
+#include <span>
 
 #include "tests/daemon/harness.hpp"
 
@@ -278,6 +280,36 @@ TEST_F(DaemonOutputs, AStateFileThatCannotBeWrittenIsSaidOnceAndCounted)
     const std::size_t first = said.find("parameters are not stored");
     ASSERT_NE(first, std::string::npos) << said;
     EXPECT_EQ(said.find("parameters are not stored", first + 1), std::string::npos) << said;
+}
+
+/// A wrong value of each kind that the link refuses, and bytes that are no frame.
+TEST_F(DaemonOutputs, TheSummaryCountsWhatTheLinkRefuses)
+{
+    Daemon daemon(arguments(), scratch / "out");
+    ASSERT_TRUE(cable.heartbeat(kPatience));
+    Heartbeat autopilot;
+    autopilot.type = 2;
+    autopilot.autopilot = 3;
+    cable.send(autopilot);
+    LocalPositionNed state;
+    state.time_boot_ms = 1000;
+    state.x = std::numeric_limits<float>::quiet_NaN();
+    cable.send(state);
+    state.x = 1e9F;
+    cable.send(state);
+    cable.send(state);
+    cable.send_bytes(std::as_bytes(std::span("noise", 5)));
+    ASSERT_TRUE(cable.heartbeat(kPatience));
+    const std::string summary = stop(daemon);
+    const std::string link = summary.substr(std::min(summary.find("\"mavlink\""), summary.size()));
+    EXPECT_EQ(number_of(link, "not_finite"), 1.0) << summary;
+    EXPECT_EQ(number_of(link, "out_of_range"), 2.0) << summary;
+    EXPECT_EQ(number_of(link, "noise_bytes"), 5.0) << summary;
+    EXPECT_GT(number_of(link, "bytes_in"), 50.0) << summary;
+    for (const char* name :
+         {"no_origin", "inbox_full", "frames_ignored", "outbox_full", "line_errors", "bad_checksum"}) {
+        EXPECT_GE(number_of(link, name), 0.0) << name;
+    }
 }
 
 }  // namespace
