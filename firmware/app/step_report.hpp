@@ -17,7 +17,7 @@ enum class Fault : std::uint16_t {
     own_state_missing = 4,  ///< the autopilot's; that of a receiver on the bus is good for advice alone
     own_state_stale = 8,
     port_lost = 16,
-    late = 32,                ///< the last step came later than two ticks after the one before
+    late = 32,                ///< this step came over 0.5 s after the one before
     not_finite = 64,          ///< a command with NaN or infinity: never sent
     passive = 128,            ///< set to plan and request nothing (stay_passive)
     bus_lost = 256,           ///< the sensor bus is not there: its silence does not mean that nothing is near
@@ -38,7 +38,7 @@ enum class OwnSource : std::uint8_t { none, autopilot, bus };
 struct StepReport {
     link::SystemState state = link::SystemState::boot;
     std::uint16_t faults = 0;      ///< Fault bits
-    bool deadline_missed = false;  ///< this step came late
+    bool deadline_missed = false;  ///< this step came over two ticks after the one before
     bool setpoint_sent = false;
     std::uint32_t work = 0;  ///< units of the supervisor's budget
     std::uint32_t bytes_in = 0;

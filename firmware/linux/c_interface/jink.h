@@ -126,7 +126,7 @@ JINK_API jink_result jink_set_can_state(jink_coprocessor* jink, int32_t state);
 
 /* --- steps */
 
-/** One tick: reads, decides, writes. Every 20 ms; the third tick that is missed is a fault.
+/** One tick: reads, decides, writes. Every 20 ms; over 40 ms is late (JINK_FLAG_LATE), over 0.5 s JINK_FAULT_LATE.
  *  @param now_us  later than at the step before, read after the last byte was fed */
 JINK_API jink_result jink_step(jink_coprocessor* jink, int64_t now_us);
 /** Says CRITICAL and ends the stream of set-points, before the program stops. Take the bytes; no step follows. */
