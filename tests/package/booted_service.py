@@ -222,6 +222,7 @@ def main():
         c.run("systemctl", "start", "jinkd")
         check("started", runs(c))
         check("it answers an autopilot's HEARTBEAT", c.hears())
+        check("it keeps a flight log", any((root / "var/log/jink").glob("jink_*.ulg")))
         check("it only advises: JNK_MODE is 1", mode_in(c.answer()) == 1.0)
         restarts(c)
         confined(c)

@@ -72,6 +72,7 @@ def test_service(build, _):
     priority = int(re.search(r"--realtime (\d+)", defaults)[1])
     assert priority <= int(re.search(r"^LimitRTPRIO=(\d+)", unit, re.M)[1]), "--realtime of the defaults is beyond LimitRTPRIO"
     assert re.search(r'^JINKD_OPTIONS=".*--params /etc/jink/jinkd\.param ', defaults, re.M), "the defaults do not name the parameter file"
+    assert re.search(r'^JINKD_OPTIONS=".* --log /var/log/jink"$', defaults, re.M), "the service keeps no flight log"
     filtered = ["/usr/bin/python3", "-B", TOP / "tests/package/system_call_filter.py", UNIT]
     if shutil.which("systemd-analyze"):
         assert run(*filtered, "chrt", "--fifo", "1", "true").returncode == run("chrt", "--fifo", "1", "true").returncode

@@ -149,8 +149,9 @@ def check(arguments):
             errors.append(f"exit status after SIGTERM: {status}")
         log.seek(0)
         said = log.read().decode(errors="replace")
-    if raised and "no real-time priority" in said:
-        errors.append("no real-time priority with the unit's limits")
+    for refused in ("no real-time priority", "memory is not locked"):
+        if raised and refused in said:
+            errors.append(f"{refused} with the unit's limits")
     if errors:
         print(said)
     return errors
