@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The flight of the live page, from made-up events: another run of jinkd, two aircraft under one id.
+// The flight of the live page, from made-up events: another run of jinkd, two aircraft under one id. And its stream of
+// events, which is refused and comes back.
 //
 //     node live_flight_test.mjs
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 
-const source = readFileSync(new URL("../../toolchain/viewer/src/live_flight.js", import.meta.url), "utf8");
-const { LiveFlight, trackName } = await import(`data:text/javascript,${encodeURIComponent(source)}`);
+async function load(name) {
+  const source = readFileSync(new URL(`../../toolchain/viewer/src/${name}`, import.meta.url), "utf8");
+  return import(`data:text/javascript,${encodeURIComponent(source)}`);
+}
+const { LiveFlight, trackName } = await load("live_flight.js");
+const { LiveSource } = await load("live_source.js");
 
 function event(run, step, more = {}) {
   return { run, step, time: step / 50, own: { position: [0, 0, 50], velocity: [5, 0, 0] }, command: null, tracks: [], work: 0, control: "autopilot",
@@ -37,5 +42,24 @@ flight.take(event(1, 6, { tracks: [track(7, 1, 20), track(7, 0, 90)] }));
 assert.deepEqual(flight.threats.map((t) => [t.name, t.position[0]]), [["track 7", [100, 90]], ["track 7 (2)", [30, 20]]]);
 assert.deepEqual(flight.separation, [28, 18]);
 assert.equal(trackName(track(7, 0, 0)), "7");
+
+// A refused connection is made anew after some seconds; one that the browser repairs itself is left to the browser.
+const made = [], waiting = [], heard = [];
+class Source {
+  static CLOSED = 2;
+  constructor(url) { Object.assign(this, { url, readyState: 0 }); made.push(this); }
+  close() { this.readyState = Source.CLOSED; }
+}
+const events = new LiveSource((e) => heard.push(e), Source, (what, ms) => { assert.ok(ms >= 1000); waiting.push(what); });
+made[0].onerror();
+assert.equal(waiting.length, 0, "the browser connects again by itself");
+made[0].readyState = Source.CLOSED;
+made[0].onerror();
+assert.deepEqual([waiting.length, made.length], [1, 1]);
+waiting[0]();
+made[1].onmessage({ data: '{"step": 1}' });
+assert.deepEqual([made.length, made[1].url, heard], [2, "events", [{ step: 1 }]]);
+events.close();
+assert.equal(made[1].readyState, Source.CLOSED);
 
 console.log("passed");

@@ -3,6 +3,7 @@
 import { Charts } from "./charts.js";
 import { decisionAt } from "./data.js";
 import { LiveFlight, separationTo, trackName } from "./live_flight.js";
+import { LiveSource } from "./live_source.js";
 import { Replay } from "./replay.js";
 import { COLOURS, believedKeys, candidateKeys, decisionText, key, make, measure, nominalKeys } from "./words.js";
 
@@ -131,7 +132,6 @@ if (replay) {
 }
 nameSeries();
 setInterval(showConnection, 250);
-const source = new EventSource("events");
-source.onmessage = (event) => take(JSON.parse(event.data));
+const source = new LiveSource(take);
 /** For tests. */
 window.jinkLive = { replay, charts, flight, source, showDecision, count: () => events, state: () => state };
