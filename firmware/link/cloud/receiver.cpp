@@ -207,11 +207,16 @@ bool Receiver::is_ours(const Part& part) noexcept
 
 bool Receiver::stamp_of(const Part& part, TimePoint now, TimePoint& stamp) noexcept
 {
+    const bool is_new = !has_stamped_ || !is_same_scan(part, stamped_);
+    if (is_new && now.us - stamped_at_.us > mavlink::ClockSync::kUnheard) {
+        clock_.forget();
+    }
     const std::int64_t sent = clock_.extend(part.stamp_ms);
-    if (!has_stamped_ || !is_same_scan(part, stamped_)) {  // one sample per scan, whatever the number of its frames
+    if (is_new) {  // one sample per scan, whatever the number of its frames
         const mavlink::ClockEvent event = clock_.one_way(sent, now.us);
         diagnostics_.clock_relocks += event != mavlink::ClockEvent::none ? 1U : 0U;
         stamped_ = part;
+        stamped_at_ = now;
         has_stamped_ = true;
     }
     stamp = {clock_.to_local(sent).value_or(now.us)};

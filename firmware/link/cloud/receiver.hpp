@@ -52,10 +52,11 @@ struct ReceiverDiagnostics {
 /// damaged frame claimed is found.
 ///
 /// The sender's stamps are mapped to our clock by their arrival; the least delay observed counts as zero. The least
-/// time from a scan's stamp to the line is not observable, and makes the scan appear that much younger.
+/// time from a scan's stamp to the line is not observable, and makes the scan appear that much younger. After 10 s
+/// without a scan the clock is mapped anew: the sender may have restarted.
 ///
 /// Work: at most kMaxWorkPerByte bytes through a checksum per byte, and a header more per call; per point a sine and a
-/// cosine of each angle. Nothing is allocated. Memory: 2 * kMaxFrame + kMaxParts / 8 bytes, 420 for the clock and the
+/// cosine of each angle. Nothing is allocated. Memory: 2 * kMaxFrame + kMaxParts / 8 bytes, 430 for the clock and the
 /// counters.
 class Receiver {
 public:
@@ -103,6 +104,7 @@ private:
     Part scan_;  ///< first frame of the newest scan
     bool has_stamped_ = false;
     Part stamped_;  ///< newest scan whose stamp has been passed to the clock
+    TimePoint stamped_at_;
     std::uint32_t scan_points_ = 0;
     std::uint16_t scan_parts_ = 0;
     Mat3 level_ = Mat3::Identity();  ///< platform, with y left and z up, to level

@@ -36,6 +36,10 @@ public:
     static constexpr std::int64_t kBucket = 5'000'000;
     static constexpr std::int64_t kRoundTripAge = 10'000'000;
     static constexpr std::int64_t kLongestDelay = 3'600'000'000;
+    /// Without round trips a restart after such a silence may look like a late stamp for good, if the remote clock
+    /// shows more than when it was heard last. Users of one-way samples alone forget() the clock then; no report is
+    /// kept for longer.
+    static constexpr std::int64_t kUnheard = 10'000'000;
 
     ClockEvent one_way(std::int64_t remote, std::int64_t arrived) noexcept;
     /// Request sent at `sent`, answered at remote time `remote`, answer received at `received`. Rejected (none) if it

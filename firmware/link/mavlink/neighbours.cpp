@@ -10,6 +10,7 @@ namespace {
 constexpr std::int32_t kJump = 200;
 constexpr std::int8_t kJumpsToBelieve = 3;
 constexpr std::int32_t kBucket = 5000;
+constexpr std::int32_t kUnheard = 10'000;
 
 std::uint32_t milliseconds(TimePoint t) noexcept { return static_cast<std::uint32_t>(t.us / 1000); }
 std::int32_t less(std::uint32_t a, std::uint32_t b) noexcept { return static_cast<std::int32_t>(a - b); }
@@ -31,8 +32,8 @@ Neighbours::System& Neighbours::of(std::uint8_t id, std::uint32_t now) noexcept
         }
         *found = {};
         found->id = id;
+        found->heard = now;
     }
-    found->heard = now;
     return *found;
 }
 
@@ -67,9 +68,10 @@ TimePoint Neighbours::stamp(std::uint8_t system, std::uint32_t boot_ms, TimePoin
 {
     const std::uint32_t arrived = milliseconds(now);
     System& s = of(system, arrived);
-    if (!s.has_clock) {
+    if (!s.has_clock || less(arrived, s.heard) > kUnheard) {
         start_clock(s, boot_ms, arrived);
     }
+    s.heard = arrived;
     const std::uint32_t sample = arrived - boot_ms;
     const std::int32_t delay = less(sample, s.best());
     const bool late = delay > kJump;

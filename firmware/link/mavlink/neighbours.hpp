@@ -14,9 +14,10 @@ namespace jink::link::mavlink {
 /// A radio network queues, and late frames must not count as new. So each system's boot clock is mapped to ours by
 /// ClockSync's rules for one-way samples, in 24 bytes a system. The least delay of the last 5 to 10 s counts as zero.
 /// Three consecutive stamps from the future, or from before those already received (a restart), move the clock. A stamp
-/// that is merely late shows its age. The least delay of a message is not observable.
+/// that is merely late shows its age. The least delay of a message is not observable. After 10 s without a stamp the
+/// next one counts as new: the system may have restarted meanwhile, or its clock have drifted.
 ///
-/// Memory: kMaxTracks * 24 bytes. When full, the system that was silent for longest is dropped and evicted() counts it:
+/// Memory: kMaxTracks * 24 bytes. When full, the system without a stamp for longest is dropped and evicted() counts it:
 /// its next stamp counts as new.
 class Neighbours {
 public:
@@ -33,7 +34,7 @@ public:
 private:
     /// All clocks in milliseconds modulo 2^32: differences follow the wrap of the wire's clock.
     struct System {
-        std::uint32_t heard = 0;
+        std::uint32_t heard = 0;   ///< the last stamp; before the first one, the first heartbeat
         std::uint32_t least = 0;   ///< our clock less its clock, the least of the current bucket
         std::uint32_t former = 0;  ///< and of the previous one
         std::uint32_t began = 0;   ///< start of the current bucket

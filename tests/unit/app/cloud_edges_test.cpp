@@ -67,7 +67,8 @@ TEST_F(CloudEdges, TheFloorIsHalfAMetreLowerForAScan)
     EXPECT_EQ(count().below_floor, 2U) << "without a place nobody knows";
 }
 
-/// A mission flies below the floor: the floor bounds nothing there, and what lies at the vehicle's height is in its way.
+/// A mission flies below the floor: the floor bounds nothing there, and what lies at the vehicle's height is in its
+/// way.
 TEST_F(CloudEdges, BelowTheFloorOnlyWhatIsBelowTheVehicleIsDropped)
 {
     view.has_floor = true;

@@ -192,6 +192,27 @@ TEST_F(CloudReceiver, SendersClockThatRestartsIsFollowed)
     EXPECT_EQ(count().restarts, 1U);
 }
 
+/// Its clock shows more than when it was heard last, and less than it would have shown without the restart.
+TEST_F(CloudReceiver, SendersClockThatRestartsUnheardIsFollowed)
+{
+    hear(driver.scan(row(1), 22'000));
+    wait(60.0F);
+    hear(driver.scan(row(1), 30'000));
+    EXPECT_EQ(count().stale, 0U);
+    ASSERT_EQ(sink.scans.size(), 2U);
+    EXPECT_EQ(sink.scans[1].scan.stamp, now);
+}
+
+TEST_F(CloudReceiver, StaleScansAreHeard)
+{
+    hear(driver.scan(row(1), 60'000));
+    for (std::uint32_t i = 0; i < 20; ++i) {
+        wait(1.0F);
+        hear(driver.scan(row(1), 59'000 + 1000 * i));
+    }
+    EXPECT_EQ(count().stale, 20U) << "a queue of two seconds";
+}
+
 TEST_F(CloudReceiver, SenderThatBeginsAnewIsHeard)
 {
     driver.number = 5000;

@@ -74,6 +74,38 @@ TEST_F(MavlinkNeighbours, ARestartIsFollowedAtTheThirdStamp)
     EXPECT_EQ(age(60'900, 230), 200);
 }
 
+/// Its clock shows more than when it was heard last, and less than it would have shown without the restart.
+TEST_F(MavlinkNeighbours, ARestartWhileUnheardIsFollowedAtTheFirstStamp)
+{
+    for (std::int64_t t = 0; t < 40'000; t += 100) {
+        static_cast<void>(age(t, 30));
+    }
+    for (std::int64_t t = 40'000; t < 160'000; t += 1000) {  // heartbeats show no clock
+        neighbours->note_armed(kNeighbourSystem, true, TimePoint{kStart + t * 1000});
+    }
+    boot -= 100'000;
+    EXPECT_EQ(age(160'000, 30), 0);
+    EXPECT_EQ(age(160'100, 230), 200);
+}
+
+TEST_F(MavlinkNeighbours, TheDriftOfALongSilenceIsForgotten)
+{
+    static_cast<void>(age(0, 30));
+    boot -= 720;  // 100 ppm, two hours
+    EXPECT_EQ(age(7'200'000, 30), 0);
+    EXPECT_EQ(age(7'200'100, 130), 100);
+}
+
+TEST_F(MavlinkNeighbours, OfAShortSilenceNothingIsForgotten)
+{
+    for (std::int64_t t = 0; t < 1000; t += 100) {
+        static_cast<void>(age(t, 30));
+    }
+    EXPECT_EQ(age(1000, 9900), 9870);
+    EXPECT_EQ(age(11'000, 9800), 9770) << "late messages are heard";
+    EXPECT_EQ(age(30'000, 30), 0);
+}
+
 TEST_F(MavlinkNeighbours, TwoOldMessagesAreNoRestart)
 {
     for (std::int64_t t = 0; t < 60'000; t += 100) {
