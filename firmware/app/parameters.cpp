@@ -32,7 +32,7 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     {"TRK_SIGMA_V", 0.3F, 0.01F, 100, false, "velocity noise of traffic, one standard deviation [m/s]"},
     {"TRK_ACCEL", 0, 0, 50, false, "acceleration that traffic may show unannounced [m/s2]"},
     {"TRK_LATENCY", 0.1F, 0, 2, false, "age of a traffic report on arrival [s]"},
-    {"TRK_AGE", 3, 0.2F, 60, false, "traffic not heard for longer is dropped, cooperative after 10 s at least [s]"},
+    {"TRK_AGE", 3, 1, 60, false, "traffic not heard for longer is dropped, cooperative after 10 s at least [s]"},
     {"OBS_HEIGHT", 10, 0.5F, 500, false, "half height given to what a level scan sees [m]"},
     {"OBS_LATENCY", 0.1F, 0, 1, false, "age of a range reading or scan on arrival [s]"},
     {"OBS_KEEP", 1, 0.1F, 60, false, "what a scan saw is kept this long [s]"},
@@ -180,12 +180,17 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     return c;
 }
 
+/// Between two reports of ADS-B [s]: traffic that is dropped sooner after a report has arrived is out of sight between
+/// reports, or always.
+constexpr Seconds kReportPeriod = 1.0F;
+
 bool fits_together(const Configuration& c) noexcept
 {
+    const bool sees_traffic = c.tracks.max_age >= c.track_latency + kReportPeriod;
     const bool bounds = !(c.floor_on && c.ceiling_on) || c.ceiling - c.floor >= 4.0F * c.limits.half_extents.z();
-    return bounds && c.planner.caps.time_high * 1.15F > c.planner.caps.time_low && world::is_valid(c.rules) &&
-           avoid::is_valid(c.supervisor) && vehicle::is_valid(c.limits) && vehicle::is_valid(c.airframe) &&
-           geometric::is_valid(c.planner);
+    return bounds && sees_traffic && c.planner.caps.time_high * 1.15F > c.planner.caps.time_low &&
+           world::is_valid(c.rules) && avoid::is_valid(c.supervisor) && vehicle::is_valid(c.limits) &&
+           vehicle::is_valid(c.airframe) && geometric::is_valid(c.planner);
 }
 
 ParamStatus check_one(std::size_t index, float value) noexcept

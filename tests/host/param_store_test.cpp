@@ -115,7 +115,7 @@ TEST(ParamStore, AKillAtAnyTimeLeavesAWholeFile)
         if (child == 0) {
             for (int k = 0;; ++k) {
                 static_cast<void>(replace_file(
-                    path, state_text(initial, changed(app::Param::track_age, 1.0F + static_cast<float>(k % 50)))));
+                    path, state_text(initial, changed(app::Param::track_age, 2.0F + static_cast<float>(k % 50)))));
             }
         }
         usleep(static_cast<useconds_t>(1000 + 937 * i));

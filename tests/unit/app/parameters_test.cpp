@@ -47,6 +47,7 @@ Changes company_of(Param p, float value)
     case Param::planes: return {{Param::offsets, 2.0F}, {Param::families, 1.0F}};
     case Param::time_low: return {{Param::time_high, 1000.0F}};
     case Param::time_high: return {{Param::time_low, 0.0F}};
+    case Param::track_age: return {{Param::track_latency, 0.0F}};
     default: return {};
     }
 }
@@ -178,6 +179,8 @@ TEST(Parameters, RefusesSetsThatDoNotFitTogether)
         {{Param::bounds, 3.0F}, {Param::ceiling, 5.99F}},   // 4 half heights are 4 m
         {{Param::bounds, 7.0F}, {Param::half_z, 20.0F}, {Param::ceiling, 81.9F}},
         {{Param::bounds, 3.0F}, {Param::floor, 130.0F}},
+        {{Param::track_age, 1.0F}},  // no second after the latency of 0.1 s
+        {{Param::track_age, 2.9F}, {Param::track_latency, 2.0F}},
     };
     for (const Changes& changes : sets) {
         Parameters parameters;
@@ -188,6 +191,14 @@ TEST(Parameters, RefusesSetsThatDoNotFitTogether)
                            [&] { return parameters.set(changes[0].first, changes[0].second); });
         }
     }
+}
+
+TEST(Parameters, AnyLatencyOfTrafficFitsTheInitialAge)
+{
+    Parameters parameters;
+    EXPECT_EQ(parameters.set(Param::track_latency, 2.0F), ParamStatus::ok);
+    EXPECT_EQ(parameters.set(Param::track_latency, 0.1F), ParamStatus::ok);
+    EXPECT_EQ(parameters.set(Param::track_age, 1.1F), ParamStatus::ok);
 }
 
 TEST(Parameters, AcceptsSetsThatFitOnlyTogether)

@@ -170,7 +170,7 @@ TEST(StepParams, ASetIsInForceInTheStepAndARefusedOneAnsweredWithWhatStands)
     EXPECT_EQ(set("JNK_NOTHING", 1.0F), 0.0F);
     EXPECT_EQ(b.wire.params.size(), answers) << "an unknown one is not answered";
     EXPECT_EQ(b.counted().params_unknown, 1U);
-    EXPECT_EQ(set("TRK_AGE", 1.0F), 1.0F);
+    EXPECT_EQ(set("TRK_AGE", 1.1F), 1.1F);
     b.hear_track(1, Vec3(100.0F, 0.0F, 50.0F));
     b.fly(1);
     b.fly(60);

@@ -193,7 +193,7 @@ TEST(StepTraffic, OwnTransponderIsNoTraffic)
 
 TEST(StepTraffic, IsForgottenWhenNotHeardForLonger)
 {
-    StepBench b({{Param::track_age, 1.0F}, {Param::track_latency, 0.0F}});
+    StepBench b({{Param::track_latency, 0.0F}, {Param::track_age, 1.0F}});
     b.hear_track(1, Vec3(100.0F, 0.0F, 50.0F));
     b.fly(1);
     b.fly(50);
