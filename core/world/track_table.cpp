@@ -185,9 +185,10 @@ void TrackTable::filter(Entry& e, const TrackMeasurement& m) noexcept
     e.sightings = static_cast<std::uint16_t>(std::min<unsigned>(e.sightings + 1U, 0xFFFFU));
 }
 
-bool TrackTable::repeats(const Entry& e, const TrackMeasurement& m) noexcept
+bool TrackTable::repeats(const Said& said, const TrackMeasurement& m) noexcept
 {
-    return m.has_velocity && m.velocity.norm() * std::abs(m.stamp - e.track.stamp) > kMoved && e.said == fingerprint(m);
+    return m.has_velocity && said.id == m.id && m.velocity.norm() * std::abs(m.stamp - said.stamp) > kMoved &&
+           said.fingerprint == fingerprint(m);
 }
 
 /// Whether the track could have reached the sighting; `cost` says how well it fits, the less the better.
@@ -233,6 +234,7 @@ TrackTable::Match TrackTable::match(const TrackMeasurement& m, const vehicle::Ve
                                     TimePoint now) const noexcept
 {
     Match out;
+    out.repeated = std::any_of(expired_.begin(), expired_.end(), [&](const Said& said) { return repeats(said, m); });
     float least_cost = std::numeric_limits<float>::infinity();
     float most = -1.0F;
     unsigned taken = 0;
@@ -241,7 +243,7 @@ TrackTable::Match TrackTable::match(const TrackMeasurement& m, const vehicle::Ve
         if (e.track.id != m.id) {
             continue;
         }
-        out.repeated = out.repeated || repeats(e, m);
+        out.repeated = out.repeated || repeats({e.track.id, e.said, e.track.stamp}, m);
         taken |= 1U << e.track.instance;
         ++out.count;
         const float its = urgency_of(e, own, now);
@@ -312,7 +314,13 @@ TrackStatus TrackTable::update(const TrackMeasurement& m, const vehicle::Vehicle
 void TrackTable::expire(TimePoint now) noexcept
 {
     for (std::size_t i = 0; i < entries_.size();) {
-        if (now - entries_[i].track.stamp > most_age(entries_[i].track.cooperative)) {
+        const Entry& e = entries_[i];
+        if (now - e.track.stamp > most_age(e.track.cooperative)) {
+            const Said said{e.track.id, e.said, e.track.stamp};
+            if (!expired_.try_push_back(said)) {
+                expired_[next_expired_] = said;
+                next_expired_ = (next_expired_ + 1) % expired_.capacity();
+            }
             entries_.swap_erase(i);
             ++diagnostics_.expired;
         } else {

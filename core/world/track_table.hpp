@@ -78,9 +78,11 @@ struct TrackTableSettings {
 /// first seen nearer to each other than that reach share a track until they part.
 ///
 /// Receivers repeat what they heard last. A sighting with exactly the place and velocity of the one before, of an
-/// aircraft that moves, is such a repetition: it is refused, so that the track's age stays that of what was heard.
+/// aircraft that moves, is such a repetition: it is refused, so that the track's age stays that of what was heard. The
+/// last sightings of the kMaxTracks tracks that aged out last are known still, so that a repetition starts none of them
+/// anew.
 ///
-/// Memory: kMaxTracks * (sizeof(Track) + 16) bytes. Nothing is dropped without a count.
+/// Memory: kMaxTracks * (2 * sizeof(Track) + 32) bytes. Nothing is dropped without a count.
 class TrackTable {
 public:
     explicit TrackTable(const TrackTableSettings& settings = {}) noexcept : settings_(settings) {}
@@ -100,12 +102,23 @@ public:
 
     /// The frame's origin turned out to lie elsewhere, or was moved: every track goes by as much [m]. O(kMaxTracks).
     void move(const Vec3& by) noexcept;
-    void clear() noexcept { entries_.clear(); }
+    void clear() noexcept
+    {
+        entries_.clear();
+        expired_.clear();
+        next_expired_ = 0;
+    }
     void configure(const TrackTableSettings& settings) noexcept { settings_ = settings; }
     [[nodiscard]] std::size_t size() const noexcept { return entries_.size(); }
     [[nodiscard]] const TrackDiagnostics& diagnostics() const noexcept { return diagnostics_; }
 
 private:
+    /// What the last sighting of a track said.
+    struct Said {
+        TrackId id = 0;
+        std::uint32_t fingerprint = 0;  ///< of place and velocity
+        TimePoint stamp;
+    };
     struct Entry {
         Track track;  ///< at its stamp
         float variance_position = 0.0F;
@@ -127,7 +140,7 @@ private:
     [[nodiscard]] Seconds most_age(bool cooperative) const noexcept;
     [[nodiscard]] TrackStatus admit(const TrackMeasurement& m, const vehicle::VehicleState& own,
                                     TimePoint now) const noexcept;
-    [[nodiscard]] static bool repeats(const Entry& entry, const TrackMeasurement& m) noexcept;
+    [[nodiscard]] static bool repeats(const Said& said, const TrackMeasurement& m) noexcept;
     [[nodiscard]] Entry start(const TrackMeasurement& m) const noexcept;
     void filter(Entry& entry, const TrackMeasurement& m) noexcept;
     [[nodiscard]] bool fit(const Entry& entry, const TrackMeasurement& m, float& cost) const noexcept;
@@ -144,6 +157,8 @@ private:
     TimePoint second_began_;
     std::uint16_t new_in_second_ = 0;
     StaticVector<Entry, kMaxTracks> entries_;
+    StaticVector<Said, kMaxTracks> expired_;  ///< full: a ring
+    std::size_t next_expired_ = 0;
     StaticVector<Track, kMaxTracks> snapshot_;
 };
 

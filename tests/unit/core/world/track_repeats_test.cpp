@@ -49,6 +49,29 @@ TEST_F(TrackRepeats, AgeOutThough)
     EXPECT_EQ(table.size(), 0U);
 }
 
+/// ArduPilot's receiver list repeats for 5 to 10 s what was received last.
+TEST_F(TrackRepeats, BringNoTrackBackThatAgedOut)
+{
+    const Vec3 velocity(60, 0, 0);
+    for (TrackId id = 100; id < 100 + kMaxTracks - 1; ++id) {  // others age out meanwhile
+        static_cast<void>(
+            table.update(test::sighting(id, Vec3(0, 500, 0), velocity, {kTime.us + 1}), own, kTime + 1.0F));
+    }
+    EXPECT_EQ(see(Vec3(-300, 0, 0), velocity, 0), TrackStatus::created);
+    table.expire({kTime.us + 31 * kTenth});
+    EXPECT_EQ(table.size(), 0U);
+    for (int i = 31; i <= 100; i += 10) {
+        EXPECT_EQ(see(Vec3(-300, 0, 0), velocity, i * kTenth), TrackStatus::stale) << i;
+        table.expire({kTime.us + i * kTenth});
+    }
+    EXPECT_EQ(table.size(), 0U);
+    EXPECT_EQ(see(Vec3(240, 0, 0), velocity, 101 * kTenth), TrackStatus::created) << "heard again";
+    table.expire({kTime.us + 140 * kTenth});
+    EXPECT_EQ(see(Vec3(240, 0, 0), velocity, 141 * kTenth), TrackStatus::stale);
+    table.clear();
+    EXPECT_EQ(see(Vec3(240, 0, 0), velocity, 142 * kTenth), TrackStatus::created) << "in another frame";
+}
+
 TEST_F(TrackRepeats, WhatStandsIsSeenAnew)
 {
     for (const Vec3& velocity : {Vec3(0, 0, 0), Vec3(0.3F, 0, 0.1F)}) {
