@@ -14,8 +14,9 @@ namespace jink::link::mavlink {
 namespace {
 
 constexpr std::uint8_t kFrameBodyNed = 8;
-/// LOCAL_POSITION_NED is ignored while ODOMETRY, which holds more, is younger than this [s].
-constexpr Seconds kOdometryFresh = 1.0F;
+/// LOCAL_POSITION_NED is ignored while ODOMETRY, which holds more, is younger than this [s]. Well below OWN_AGE: it has
+/// to take over before the own state counts as stale.
+constexpr Seconds kOdometryFresh = 0.2F;
 /// Own global and local position this close in time give an origin [s].
 constexpr Seconds kPairAge = 0.2F;
 /// Ranges in the body frame need a heading no older than this [s].

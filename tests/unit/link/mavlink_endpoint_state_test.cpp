@@ -164,12 +164,12 @@ TEST_F(MavlinkEndpointState, OdometryWinsOverLocalPositionWhileFresh)
     EXPECT_EQ(state.sigma_position, 1.0F);
     EXPECT_EQ(state.sigma_velocity, 0.0F);
     clear();
-    wait(0.5F);
+    wait(0.15F);
     local_position({1, 1, 1});
     EXPECT_FALSE(inbox->has_own_state);
-    wait(0.6F);
+    wait(0.1F);
     local_position({1, 1, 1});
-    EXPECT_TRUE(inbox->has_own_state);
+    EXPECT_TRUE(inbox->has_own_state) << "well before the own state is stale";
     EXPECT_EQ(inbox->own_state.state.sigma_position, 0.0F);
 }
 
