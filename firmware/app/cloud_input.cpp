@@ -44,15 +44,24 @@ void CloudInput::serve(TimePoint now, const CloudView& view) noexcept
     if (port_ == nullptr) {
         return;
     }
+    const std::uint32_t scans_before = receiver_.diagnostics().scans;
     std::size_t left = kMaxCloudBytesPerStep;
     std::size_t n = 0;
+    bool is_full = false;
     do {
-        n = port_->read(std::span(chunk_).first(std::min(chunk_.size(), left)));
-        receiver_.receive({chunk_.data(), n}, now, port_tee_);
-        left -= n;
-    } while (n > 0 && left > 0);
+        if (chunk_begin_ == chunk_end_) {
+            chunk_begin_ = 0;
+            chunk_end_ = port_->read(std::span(chunk_).first(std::min(chunk_.size(), left)));
+            left -= chunk_end_;
+        }
+        n = std::min(kPiece, chunk_end_ - chunk_begin_);
+        receiver_.receive({chunk_.data() + chunk_begin_, n}, now, port_tee_);
+        chunk_begin_ += n;
+        is_full = (left == 0 && chunk_begin_ == chunk_end_) ||
+                  receiver_.diagnostics().scans - scans_before >= kMaxCloudScansPerStep;
+    } while (n > 0 && !is_full);
     bytes_in_ += kMaxCloudBytesPerStep - left;
-    full_steps_ += left == 0 ? 1U : 0U;
+    full_steps_ += is_full ? 1U : 0U;
 }
 
 }  // namespace jink::app

@@ -11,8 +11,11 @@
 
 namespace jink::app {
 
+/// Scans of the cloud port that may begin in a step, and a few more within kPiece bytes: the end of a scan takes half a
+/// millisecond on a slow computer. 200 a second are more than LiDARs send.
+inline constexpr std::uint32_t kMaxCloudScansPerStep = 4;
 /// Bytes read from the cloud port per step. 10^5 points ten times a second are 126 005 bytes in 20 ms; the rest lets a
-/// late step catch up within four. What the port still holds then waits for the next step, and counts as a full step.
+/// late step catch up within four. What is left by then waits for the next step, and the step counts as a full one.
 inline constexpr std::size_t kMaxCloudBytesPerStep = 160U * 1024U;
 
 /// Point clouds on their way into the world: compact frames on a port of their own, and single points of the
@@ -35,7 +38,7 @@ public:
     }
     [[nodiscard]] link::CloudSink& link_points() noexcept override { return link_tee_; }
 
-    /// Reads the port up to kMaxCloudBytesPerStep. O(bytes + scans that end * kBins).
+    /// Reads the port up to kMaxCloudBytesPerStep or kMaxCloudScansPerStep. O(bytes + scans that end * kBins).
     void serve(TimePoint now, const CloudView& view) noexcept override;
 
     [[nodiscard]] bool has_port() const noexcept { return port_ != nullptr; }
@@ -46,11 +49,13 @@ public:
     [[nodiscard]] const CloudDiagnostics& port_diagnostics() const noexcept { return port_image_.diagnostics(); }
     [[nodiscard]] const CloudDiagnostics& link_diagnostics() const noexcept { return link_image_.diagnostics(); }
     [[nodiscard]] std::uint64_t bytes_in() const noexcept { return bytes_in_; }
-    /// Steps that read all they may.
+    /// Steps that took all they may: bytes or scans.
     [[nodiscard]] std::uint32_t full_steps() const noexcept { return full_steps_; }
 
 private:
     static constexpr std::size_t kChunk = 4096;
+    /// Bytes between two looks at the number of scans: three of the smallest.
+    static constexpr std::size_t kPiece = 128;
     static constexpr std::uint32_t kPortIds = 0x03000000;
     static constexpr std::uint32_t kLinkIds = 0x03020000;  ///< 256 sensors * 512 bins behind
 
@@ -73,6 +78,8 @@ private:
     std::uint64_t bytes_in_ = 0;
     std::uint32_t full_steps_ = 0;
     std::array<std::byte, kChunk> chunk_{};
+    std::size_t chunk_begin_ = 0;  ///< read, not yet taken
+    std::size_t chunk_end_ = 0;
 };
 
 }  // namespace jink::app

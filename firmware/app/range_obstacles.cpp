@@ -25,6 +25,7 @@ static_assert(kMaxReturnParts <= kIdsOfDirection);
 constexpr std::uint32_t kMaxDirections = 128;
 /// Narrowest sector that a link reports [rad].
 constexpr float kNarrowestSector = 0.5F * kPi / 180.0F;
+static_assert(kScanIds + link::RangeScan::kMaxScanSensors * kIdsOfScan <= kReadingIds);
 static_assert(2.0F * kPi / kNarrowestSector < static_cast<float>(kIdsOfScan));
 
 /// Directions `width` [rad] apart, numbered around the horizon of the world, not of the vehicle: what a sensor saw

@@ -91,12 +91,13 @@ inline constexpr std::size_t kMaxScanSectors = 72;
 /// |increment|.
 struct RangeScan {
     TimePoint stamp;
-    float yaw_first = 0.0F;  ///< [rad]
-    float increment = 0.0F;  ///< [rad], != 0; negative: clockwise
-    float min_range = 0.0F;  ///< [m]
-    float max_range = 0.0F;  ///< [m]
-    std::uint8_t sensor = 0;
+    float yaw_first = 0.0F;                       ///< [rad]
+    float increment = 0.0F;                       ///< [rad], != 0; negative: clockwise
+    float min_range = 0.0F;                       ///< [m]
+    float max_range = 0.0F;                       ///< [m]
+    std::uint16_t sensor = 0;                     ///< below kMaxScanSensors
     StaticVector<float, kMaxScanSectors> ranges;  ///< [m]; kNothing: clear; kUnknown: unknown
+    static constexpr std::uint16_t kMaxScanSensors = 16384;
     static constexpr float kNothing = 1e9F;
     static constexpr float kUnknown = -1.0F;
 };
@@ -173,7 +174,7 @@ struct Inbox {
     Vec3 home = Vec3::Zero();
     bool has_sticks = false;
     SticksReport sticks;               ///< the newest
-    StaticVector<RangeScan, 2> scans;  ///< the newest of each sensor
+    StaticVector<RangeScan, 4> scans;  ///< the newest of each sensor
     StaticVector<TrackReport, kMaxTrackReports> tracks;
     StaticVector<RangeReading, 16> readings;
     StaticVector<ParamRequest, 16> params;

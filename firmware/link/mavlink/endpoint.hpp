@@ -25,8 +25,8 @@
 //   other systems, whose receivers hear us too (traffic_relayed counts other systems' traffic).
 // * Own state: LOCAL_POSITION_NED (position, velocity), ATTITUDE_QUATERNION or ATTITUDE (yaw), ODOMETRY (all of it:
 //   velocity in its child frame rotated by q, sigmas from the covariances unless NaN, reset_counter; frame_id other
-//   than LOCAL_NED is out_of_range). ODOMETRY wins while it is younger than 1 s. Stamps are mapped by ClockSync; older
-//   than max_stamp_age or from the future: stale_stamp. The wrap of time_boot_ms after 49.7 days is handled.
+//   than LOCAL_NED is out_of_range). ODOMETRY wins while it is younger than 0.2 s. Stamps are mapped by ClockSync;
+//   older than max_stamp_age or from the future: stale_stamp. The wrap of time_boot_ms after 49.7 days is handled.
 // * ClockSync: TIMESYNC requests once a second, lowest-round-trip filter, fallback to the least one-way delay observed.
 //   Re-locks are counted (clock_relocks). A re-lock backwards counts as the autopilot's restart: origin, mission and
 //   own state are discarded. We answer the autopilot's TIMESYNC requests.
@@ -339,10 +339,12 @@ private:
     std::uint16_t reached_sequence_ = 0;
     TimePoint reached_;
 
-    /// State of a scan of single points with one stamp.
+    /// State of a scan of single points.
     bool is_scan_open_ = false;
     std::uint8_t scan_sensor_ = 0;
-    std::uint32_t scan_boot_ms_ = 0;
+    std::uint8_t scans_in_step_ = 0;  ///< begun at last_point_
+    std::uint32_t scan_boot_ms_ = 0;  ///< of its newest point
+    float scan_max_range_ = 0.0F;     ///< [m]
     CloudSink* points_to_ = nullptr;
     TimePoint last_point_;
 };

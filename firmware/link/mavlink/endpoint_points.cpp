@@ -10,6 +10,8 @@ namespace {
 
 /// Points of one scan follow one another within this time, as in ArduPilot [s].
 constexpr Seconds kPointPause = 0.05F;
+/// Scans that begin in one step. The end of a scan is costly, and senders may stamp each point or take turns.
+constexpr std::uint8_t kMaxScansPerStep = 4;
 /// A roll of 90 degrees a second moves a point at 20 m by 9 m in this time: older attitudes are not used [s].
 constexpr Seconds kTiltFresh = 0.3F;
 /// Largest age of the own position that makes points of the local frame relative; extrapolated from its stamp [s].
@@ -42,7 +44,7 @@ void Endpoint::on_point(const Context& c) noexcept
     }
     follow_scan(m, c.now);
     if (distance > m.max_distance) {
-        points_to_->add(Ray::nothing, point / distance);
+        points_to_->add(m.max_distance < scan_max_range_ ? Ray::invalid : Ray::nothing, point / distance);
     } else {
         points_to_->add(Ray::hit, point * (std::max(distance, m.min_distance) / distance));
     }
@@ -66,10 +68,14 @@ bool Endpoint::make_level(const ObstacleDistance3d& m, TimePoint now, Vec3& poin
     return knows_yaw(now) && has_local_ && now - local_heard_ <= kPlaceFresh;
 }
 
-/// Opens the scan to which a point belongs, unless that scan is open already.
+/// Opens the scan to which a point belongs, unless that scan is open already. Within a step (one `now`) a change of the
+/// stamp continues the scan that began in it, and so does a change of the sensor after kMaxScansPerStep scans.
 void Endpoint::follow_scan(const ObstacleDistance3d& m, TimePoint now) noexcept
 {
-    if (is_scan_open_ && (m.time_boot_ms != scan_boot_ms_ || m.sensor_type != scan_sensor_)) {
+    scans_in_step_ = now == last_point_ ? scans_in_step_ : std::uint8_t{0};
+    const bool is_other = m.sensor_type != scan_sensor_;
+    const bool may_begin = scans_in_step_ < (is_other ? kMaxScansPerStep : 1);
+    if (is_scan_open_ && may_begin && (is_other || m.time_boot_ms != scan_boot_ms_)) {
         points_to_->end_scan(0);
         is_scan_open_ = false;
     }
@@ -80,9 +86,11 @@ void Endpoint::follow_scan(const ObstacleDistance3d& m, TimePoint now) noexcept
         scan.max_range = m.max_distance;
         points_to_->begin_scan(scan);
         is_scan_open_ = true;
-        scan_boot_ms_ = m.time_boot_ms;
+        ++scans_in_step_;
         scan_sensor_ = m.sensor_type;
+        scan_max_range_ = m.max_distance;
     }
+    scan_boot_ms_ = m.time_boot_ms;
     last_point_ = now;
 }
 

@@ -20,6 +20,9 @@ constexpr std::uint8_t kFirstProximityId = 10;
 constexpr std::uint8_t kLastProximityId = 19;
 /// A sector of that library: half angle [rad].
 constexpr float kProximityHalfAngle = kPi / 8.0F;
+/// Types of sensors that one component may have scans of; MAVLink names five.
+constexpr std::uint16_t kSensorTypes = 64;
+static_assert(256 * kSensorTypes == RangeScan::kMaxScanSensors);
 /// A field of view below this counts as not given [rad].
 constexpr float kMinFieldOfView = 1e-3F;
 
@@ -84,7 +87,8 @@ void Endpoint::on_obstacle_distance(const Context& c) noexcept
     const bool known_frame = m.frame == kFrameGlobal || m.frame == kFrameLocalNed || m.frame == kFrameBodyFrd;
     // Sectors below a degree would leave most of the circle unseen; sectors above 180 degrees give no direction.
     if (!known_frame || std::abs(increment) < 0.5F || std::abs(increment) > 180.0F ||
-        std::abs(m.angle_offset) > 360.0F || m.max_distance == 0 || m.min_distance > m.max_distance) {
+        std::abs(m.angle_offset) > 360.0F || m.max_distance == 0 || m.min_distance > m.max_distance ||
+        m.sensor_type >= kSensorTypes) {
         ++diagnostics_.out_of_range;
         return;
     }
@@ -93,8 +97,8 @@ void Endpoint::on_obstacle_distance(const Context& c) noexcept
         return;
     }
     auto& scans = c.inbox.scans;
-    const auto same =
-        std::find_if(scans.begin(), scans.end(), [&](const RangeScan& s) { return s.sensor == m.sensor_type; });
+    const auto sensor = static_cast<std::uint16_t>(c.frame.header.component_id * kSensorTypes + m.sensor_type);
+    const auto same = std::find_if(scans.begin(), scans.end(), [&](const RangeScan& s) { return s.sensor == sensor; });
     const bool is_new = same == scans.end();
     if (!is_new || scans.size() == scans.capacity()) {  // the newer of a sensor replaces its former
         ++diagnostics_.inbox_full;
@@ -104,7 +108,7 @@ void Endpoint::on_obstacle_distance(const Context& c) noexcept
     }
     RangeScan& scan = is_new ? scans.back() : *same;
     scan.stamp = c.now;
-    scan.sensor = m.sensor_type;
+    scan.sensor = sensor;
     scan.min_range = static_cast<float>(m.min_distance) * kCentimetre;
     scan.max_range = static_cast<float>(m.max_distance) * kCentimetre;
     scan.increment = -increment * kDegree;

@@ -2,9 +2,12 @@
 // Point cloud input: a step's share of an endless port, and causes that spoil a direction.
 #include "firmware/app/cloud_input.hpp"
 
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "tests/unit/app/cloud_image_bench.hpp"
+#include "tests/unit/link/cloud_tools.hpp"
 
 namespace jink::app {
 namespace {
@@ -41,6 +44,47 @@ TEST(CloudPort, AStepReadsItsShareAndNoByteMore)
         EXPECT_EQ(input->full_steps(), 1U);
     }
     EXPECT_FALSE(std::make_unique<CloudInput>()->has_port());
+}
+
+/// Gives what it holds.
+struct FilledPort final : hal::SerialPort {
+    std::size_t read(std::span<std::byte> into) noexcept override
+    {
+        const std::size_t n = std::min(into.size(), bytes.size() - given);
+        std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(given), n, into.begin());
+        given += n;
+        return n;
+    }
+    std::size_t write(std::span<const std::byte> /*from*/) noexcept override { return 0; }
+    hal::PortHealth health() const noexcept override { return {}; }
+    std::vector<std::byte> bytes;
+    std::size_t given = 0;
+};
+
+/// The end of a scan is costly, and the smallest has 42 bytes: what is left waits for the next step.
+TEST(CloudPort, AStepEndsFewScans)
+{
+    link::cloud::test::Driver driver;
+    FilledPort port;
+    constexpr std::uint32_t kScans = 100;
+    for (std::uint32_t i = 0; i < kScans; ++i) {
+        const auto frames = driver.scan(std::vector<link::cloud::RawPoint>{{0, 0, 2000}}, 1000 + i);
+        port.bytes.insert(port.bytes.end(), frames[0].begin(), frames[0].end());
+    }
+    const auto input = std::make_unique<CloudInput>(&port);
+    TimePoint now{1'000'000};
+    std::uint32_t before = 0;
+    std::uint32_t steps = 0;
+    for (; input->receiver_diagnostics().scans < kScans && steps < kScans; ++steps, now = now + 0.02F) {
+        input->serve(now, {});
+        EXPECT_LE(input->receiver_diagnostics().scans - before, 8U);
+        before = input->receiver_diagnostics().scans;
+    }
+    EXPECT_EQ(before, kScans);
+    EXPECT_LE(steps, kScans / 4);
+    EXPECT_GE(input->full_steps(), steps - 1);
+    EXPECT_EQ(input->bytes_in(), port.bytes.size());
+    EXPECT_EQ(input->receiver_diagnostics().noise_bytes, 0U);
 }
 
 class SpoiledDirections : public test::CloudImageBench {

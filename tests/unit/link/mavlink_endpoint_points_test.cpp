@@ -231,6 +231,7 @@ TEST_F(EndpointPoints, ScansEndWithTheStampTheSensorAndAPause)
     point(body(2, 0, 0));
     EXPECT_EQ(sink.scans.size(), 1U);
     EXPECT_FALSE(sink.scans[0].ended);
+    wait(0.02F);
     point(body(3, 0, 0, 1100));
     ASSERT_EQ(sink.scans.size(), 2U);
     EXPECT_TRUE(sink.scans[0].ended);
@@ -247,6 +248,28 @@ TEST_F(EndpointPoints, ScansEndWithTheStampTheSensorAndAPause)
     point(body(5, 0, 0, 1100));  // the same stamp again: a scan of its own
     EXPECT_EQ(sink.scans.size(), 4U);
     EXPECT_FALSE(sink.broken);
+}
+
+/// Some senders stamp each point, and some take turns: the end of a scan is costly.
+TEST_F(EndpointPoints, AStepEndsFewScansWhateverTheStamps)
+{
+    attitude(0);
+    std::uint32_t stamp = 1;
+    std::size_t steps = 0;
+    for (const unsigned sensors : {1U, 2U}) {
+        sink = {};
+        for (steps = 0; steps < 3; ++steps, wait(0.02F)) {
+            for (unsigned i = 0; i < 100; ++i) {
+                ObstacleDistance3d m = body(5, 0, 0, stamp++);
+                m.sensor_type = static_cast<std::uint8_t>(i % sensors);
+                point(m);
+            }
+        }
+        EXPECT_LE(sink.scans.size(), sensors == 1 ? steps : 4 * steps);
+        EXPECT_EQ(sink.rays(), 100 * steps);
+        EXPECT_FALSE(sink.broken);
+        silence(0.06F);
+    }
 }
 
 TEST_F(EndpointPoints, OtherSystemsAreIgnored)

@@ -2,6 +2,7 @@
 // Traffic, range scans and range readings.
 #include <gtest/gtest.h>
 #include <limits>
+#include <set>
 
 #include "firmware/link/mavlink/text.hpp"
 #include "tests/numbers.hpp"
@@ -276,6 +277,31 @@ TEST_F(MavlinkEndpointSensors, BodyRangesNeedAFreshHeading)
     EXPECT_EQ(inbox->readings.size(), 1U);
 }
 
+/// As a LiDAR at the front and one at the rear, each on its own computer.
+TEST_F(MavlinkEndpointSensors, ScansOfOneTypeOfTwoComponentsAreTwoSensors)
+{
+    for (const std::uint8_t component : {154, 155, 156, 157}) {
+        ObstacleDistance m = scan();
+        m.distances[0] = static_cast<std::uint16_t>(10 * component);
+        from(kSystem, component, m);
+    }
+    EXPECT_EQ(count().inbox_full, 0U);
+    ASSERT_EQ(inbox->scans.size(), 4U);
+    std::set<unsigned> sensors;
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_FLOAT_EQ(inbox->scans[i].ranges[0], 15.4F + 0.1F * static_cast<float>(i));
+        sensors.insert(inbox->scans[i].sensor);
+    }
+    EXPECT_EQ(sensors.size(), 4U);
+    from(kSystem, 158, scan());
+    EXPECT_EQ(count().inbox_full, 1U);
+    EXPECT_EQ(inbox->scans.size(), 4U);
+    ObstacleDistance unknown_type = scan();
+    unknown_type.sensor_type = 64;
+    from(kSystem, 154, unknown_type);
+    EXPECT_EQ(count().out_of_range, 1U);
+}
+
 TEST_F(MavlinkEndpointSensors, ScansOfTwoSensorsInATickAreBothKeptAndASecondOfOneReplacesItsFirst)
 {
     ObstacleDistance front = scan();
@@ -288,17 +314,12 @@ TEST_F(MavlinkEndpointSensors, ScansOfTwoSensorsInATickAreBothKeptAndASecondOfOn
     from(kSystem, 154, rear);
     EXPECT_EQ(count().inbox_full, 0U);
     front.distances[0] = 900;
-    from(kSystem, 155, front);
+    from(kSystem, 154, front);
     EXPECT_EQ(count().inbox_full, 1U);
     ASSERT_EQ(inbox->scans.size(), 2U);
     EXPECT_FLOAT_EQ(inbox->scans[0].ranges[0], 9.0F);
     EXPECT_FLOAT_EQ(inbox->scans[1].ranges[0], 20.0F);
     EXPECT_EQ(inbox->scans[0].ranges.size(), 72U) << "nothing of the former one";
-    ObstacleDistance third = scan();
-    third.sensor_type = 2;
-    from(kSystem, 154, third);
-    EXPECT_EQ(count().inbox_full, 2U);
-    EXPECT_EQ(inbox->scans.size(), 2U);
 }
 
 TEST_F(MavlinkEndpointSensors, ReadingsLookWhereTheirOrientationSays)
