@@ -54,7 +54,7 @@ public:
 
 private:
     static constexpr std::size_t kChunk = 4096;
-    /// Bytes between two looks at the number of scans: three of the smallest.
+    /// Bytes between two checks of the number of scans: three of the smallest.
     static constexpr std::size_t kPiece = 128;
     static constexpr std::uint32_t kPortIds = 0x03000000;
     static constexpr std::uint32_t kLinkIds = 0x03020000;  ///< 256 sensors * 512 bins behind
