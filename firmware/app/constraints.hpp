@@ -23,9 +23,9 @@ struct ConstraintDiagnostics {
 /// Closed areas, valid until the next set is received: each set replaces the one before.
 ///
 /// A moving one goes straight on from its stamp. If received longer ago than kFresh, it grows at its own speed to all
-/// sides besides, so that it is held where it may be if it has since then stopped, sped up to twice its speed, or turned
-/// by up to 60 degrees at the same speed. One that turns back leaves this growth: it has to be reported anew. Nothing
-/// that stands grows old, and nothing is forgotten before its end.
+/// sides besides, so that it is held where it may be if it has since then stopped, sped up to twice its speed, or
+/// turned by up to 60 degrees at the same speed. One that turns back leaves this growth: it has to be reported anew.
+/// Nothing that stands grows old, and nothing is forgotten before its end.
 ///
 /// More than kMaxCylinders: the two farthest of the vehicle become one standing one that holds both for kFresh; after
 /// that it grows at twice the greatest speed of all that were received, so that it still does.
