@@ -93,7 +93,7 @@ bool StateMachine::renew(Tick& tick) noexcept
     }
     flying_ = answer_;
     fly(answer_, tick);
-    if (is_clear_for(tick, settings_.settle)) {
+    if (is_clear_for(tick, settings_.settle) && leads_back(tick)) {
         enter(Phase::rejoining);
         rejoin(tick);
     }
@@ -175,7 +175,7 @@ void StateMachine::avoid(Tick& tick) noexcept
     if (find_faster(tick)) {
         return;
     }
-    if (is_clear_for(tick, settings_.settle)) {
+    if (is_clear_for(tick, settings_.settle) && leads_back(tick)) {
         enter(Phase::rejoining);
         rejoin(tick);
     }

@@ -85,7 +85,7 @@ void StateMachine::brake(Tick& tick) noexcept
 {
     // A path that stays free, but with little to spare, is tried after a longer wait.
     const bool narrow = free_since_ && tick.s.now - *free_since_ >= kNarrowPatience * settings_.settle;
-    if (is_clear_for(tick, settings_.settle) || narrow) {
+    if ((is_clear_for(tick, settings_.settle) || narrow) && leads_back(tick)) {
         enter(Phase::rejoining);
         rejoin(tick);
         return;

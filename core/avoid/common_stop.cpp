@@ -50,13 +50,14 @@ float braked(Seconds t, Seconds span) noexcept
 /// A cooperative track that flies on for the latency and stops then, and what else it may do.
 class OtherStop {
 public:
-    [[gnu::cold, gnu::noinline]] OtherStop(const world::Situation& s, const world::Threat& track) noexcept
-        : begins_(latency_of(s)), velocity_(track.velocity), braking_(track.velocity, s.limits), threat_(track)
+    [[gnu::cold, gnu::noinline]] OtherStop(const world::Situation& s, const world::Threat& track,
+                                           Seconds ahead) noexcept
+        : begins_(latency_of(s) + ahead), velocity_(track.velocity), braking_(track.velocity, s.limits), threat_(track)
     {
         const float acceleration = std::max(s.limits.max_acceleration, s.limits.max_vertical_acceleration);
         const float speed = velocity_.norm();
         const float most = speed + std::max(speed, s.limits.cruise_speed);
-        const Seconds unheard = std::max(s.now - track.track->stamp, 0.0F) + begins_;
+        const Seconds unheard = std::max(s.now - track.track->stamp, 0.0F) + latency_of(s);
         const Seconds changes = std::min(unheard, most / acceleration);
         const float unknown = acceleration * changes;
         const float place = 0.5F * unknown * changes + unknown * (unheard - changes);
@@ -98,14 +99,16 @@ struct OwnStop {
 
 class CommonStop {
 public:
-    CommonStop(const world::Situation& s, const Vec3& wanted, float fastest, WorkBudget& budget) noexcept
-        : s_(s), wanted_(wanted), most_(fastest < wanted.norm() ? fastest / wanted.norm() : 1.0F),
+    CommonStop(const world::Situation& s, const Vec3& wanted, float fastest, bool counted_on, Seconds ahead,
+               WorkBudget& budget) noexcept
+        : s_(s), wanted_(wanted), counted_on_(counted_on), ahead_(ahead), latency_(latency_of(s) + ahead),
+          most_(fastest < wanted.norm() ? fastest / wanted.norm() : 1.0F),
           tracks_(world::of_kind(s.threats, world::ThreatKind::track)), budget_(budget),
           acceleration_(std::max(s.limits.max_acceleration, s.limits.max_vertical_acceleration))
     {
-        const float faster = acceleration_ * latency_of(s);
-        horizon_ = latency_of(s) + std::max(Braking(s.own.velocity, s.limits, faster).longest(),
-                                            vehicle::stopping_time(s.own.velocity.norm() + faster, s.limits));
+        const float faster = acceleration_ * latency_;
+        horizon_ = latency_ + std::max(Braking(s.own.velocity, s.limits, faster).longest(),
+                                       vehicle::stopping_time(s.own.velocity.norm() + faster, s.limits));
     }
 
     /// Until the last one stands. False where there is no such track.
@@ -116,14 +119,14 @@ public:
         for (const world::Threat& track : tracks_) {
             if (counts(track)) {
                 any = true;
-                horizon_ = std::max(horizon_, OtherStop(s_, track).ends());
+                horizon_ = std::max(horizon_, OtherStop(s_, track, ahead_).ends());
             }
         }
         return any;
     }
 
     /// See stoppable_command.
-    [[nodiscard, gnu::cold, gnu::noinline]] Vec3 command() noexcept
+    [[nodiscard, gnu::cold, gnu::noinline]] StoppableCommand command() noexcept
     {
         OwnStop own;
         float share = most_;
@@ -134,11 +137,12 @@ public:
             }
         }
         if (share >= 1.0F) {
-            return wanted_;
+            return {wanted_, true};
         }
+        const bool stops = away_ == Vec3::Zero() && !budget_.exhausted();
         Vec3 command = share * wanted_;
         if (share <= 0.0F || !is_clear(command, own)) {
-            command = way_out(own);
+            command = evades(own) ? wanted_ : way_out(own);
         }
         fly(command, own);
         const float rest = margin_to_rest(own);
@@ -146,7 +150,7 @@ public:
             fly(wanted_, own);
             command = margin_to_rest(own) >= rest && !budget_.exhausted() ? wanted_ : command;
         }
-        return command;
+        return {command, stops || counted_on_};
     }
 
 private:
@@ -156,11 +160,10 @@ private:
     [[gnu::cold, gnu::noinline]] void fly(const Vec3& command, OwnStop& out) noexcept
     {
         static_cast<void>(budget_.spend(units::kStopFlight));
-        const Seconds latency = latency_of(s_);
         path::Prediction flight;
-        path::predict_velocity_command(s_.own, command, latency, latency, s_.limits, flight);
+        path::predict_velocity_command(s_.own, command, latency_, latency_, s_.limits, flight);
         out = {};
-        const Seconds rest = horizon_ - latency;
+        const Seconds rest = horizon_ - latency_;
         path::extend_by_velocity_command(Vec3::Zero(), rest, rest / static_cast<float>(kChords), s_.limits, flight);
         for (const path::PathPoint& p : flight.path.points) {
             if (!out.points.try_push_back(p)) {
@@ -173,13 +176,19 @@ private:
         }
     }
 
-    /// Below 0 where the track may be met.
+    /// Below 0 where the track may be met, whether it stops now or as late as the own vehicle.
     [[nodiscard, gnu::cold, gnu::noinline]] float margin_to(const world::Threat& track, const OwnStop& own) noexcept
+    {
+        const float margin = margin_to(track, own, ahead_);
+        return ahead_ > 0.0F && margin >= 0.0F ? std::min(margin, margin_to(track, own, 0.0F)) : margin;
+    }
+    [[nodiscard, gnu::cold, gnu::noinline]] float margin_to(const world::Threat& track, const OwnStop& own,
+                                                            Seconds ahead) noexcept
     {
         if (!budget_.spend(units::kStopLook)) {
             return -world::kSeparationCap;
         }
-        const OtherStop other(s_, track);
+        const OtherStop other(s_, track, ahead);
         world::Threat threat = other.threat();
         const float far = (threat.position - s_.own.position).norm() - own.reach - own.sagitta - other.reach() -
                           s_.limits.half_extents.norm() - threat.half_height - threat.radius_at(horizon_);
@@ -245,6 +254,30 @@ private:
         });
     }
 
+    /// Of a vehicle that moves: whether a stop comes too near to a track, and what is wanted less so.
+    [[nodiscard, gnu::cold, gnu::noinline]] bool evades(OwnStop& own) noexcept
+    {
+        if (counted_on_ || s_.own.velocity.norm() <= 2.0F * kLeaving || !(away_.norm() > kTiny)) {
+            return false;
+        }
+        fly(Vec3::Zero(), own);
+        const float stop = least_margin(own, -world::kSeparationCap);
+        fly(wanted_, own);
+        return least_margin(own, stop) > stop && !budget_.exhausted();
+    }
+
+    /// To all tracks; or no more than `enough`, once one is as near.
+    [[nodiscard]] float least_margin(const OwnStop& own, float enough) noexcept
+    {
+        float least = world::kSeparationCap;
+        for (const world::Threat& track : tracks_) {
+            if (counts(track) && least > enough) {
+                least = std::min(least, margin_to(track, own));
+            }
+        }
+        return least;
+    }
+
     /// A stop; or slowly out of the reach of the tracks that not even a stop is clear of.
     [[nodiscard]] Vec3 way_out(OwnStop& own) noexcept
     {
@@ -269,7 +302,10 @@ private:
 
     const world::Situation& s_;
     const Vec3& wanted_;
-    float most_;  ///< share of what is wanted, at most
+    bool counted_on_;  ///< a stop, by the others
+    Seconds ahead_;    ///< before the own vehicle stops, and perhaps the others
+    Seconds latency_;  ///< and with the latency
+    float most_;       ///< share of what is wanted, at most
     std::span<const world::Threat> tracks_;
     WorkBudget& budget_;
     float acceleration_;
@@ -279,13 +315,14 @@ private:
 
 }  // namespace
 
-Vec3 stoppable_command(const world::Situation& s, const Vec3& wanted, float fastest, WorkBudget& budget) noexcept
+StoppableCommand stoppable_command(const world::Situation& s, const Vec3& wanted, float fastest, WorkBudget& budget,
+                                   bool counted_on, Seconds ahead) noexcept
 {
     if (s.limits.kind != vehicle::VehicleKind::multirotor || s.threats.data() == nullptr || !is_finite(wanted)) {
-        return wanted;
+        return {wanted, false};
     }
-    CommonStop stop(s, wanted, fastest, budget);
-    return stop.has_tracks() ? stop.command() : wanted;
+    CommonStop stop(s, wanted, fastest, counted_on, ahead, budget);
+    return stop.has_tracks() ? stop.command() : StoppableCommand{wanted, false};
 }
 
 }  // namespace jink::avoid

@@ -8,27 +8,37 @@
 
 namespace jink::avoid {
 
+struct StoppableCommand {
+    Vec3 velocity = Vec3::Zero();  ///< [m/s]
+    /// All cooperative tracks could stop with the own vehicle, after this command or an earlier one since it was
+    /// steered from here. False where there are none.
+    bool counted_on = false;
+};
+
 /// The command that is flown in place of `wanted`, so that the own vehicle and all cooperative tracks can still stop
 /// without contact: `wanted` where it leaves that, else so much of it, in eighths, as does; where none does, a stop.
 /// A part of `wanted` is never faster than `fastest` [m/s], which does not limit `wanted` flown whole: the age of
 /// reports rises and falls, and what is clear with it; a command that has been held back comes up again no faster than
 /// the vehicle can.
 ///
-/// The own vehicle flies a command for FlightRules::latency and stops then. A track flies on for the latency and stops
-/// then. Since its report, and until it stops, it may have changed its velocity by what the own vehicle could in that
-/// time; it flies no faster than the own cruise speed, or than it was reported to. Level and vertical deceleration by
-/// themselves, k_sigma of places and velocities and the own loop's lag included; the lag of a track's loop is left to
-/// the safety box.
+/// The own vehicle flies a command for FlightRules::latency and `ahead`, and stops then. A track flies on for as long
+/// and stops then. Since its report, and until it stops, it may have changed its velocity by what the own vehicle could
+/// in that time; it flies no faster than the own cruise speed, or than it was reported to. Level and vertical
+/// deceleration by themselves, k_sigma of places and velocities and the own loop's lag included; the lag of a track's
+/// loop is left to the safety box.
 ///
 /// Two vehicles that command no more than this never touch, as long as both are steered so, fly as the vehicle model
 /// says, and hear each other's reports: of their two newest commands the later one was found clear of all that the
 /// earlier one may lead to; and one who finds none that is clear stops, which the other one has counted on. So do any
 /// number of vehicles. What this assumes: docs/guides/common_stop.md.
 ///
-/// A vehicle that stands where not even that is clear of a track leaves its reach at 0.3 m/s, else all would stand for
-/// ever. `wanted` where stopping is not clear of anything else and no better than `wanted` there; and for a fixed wing,
-/// which cannot stop. Without budget: a stop. O(tracks), six times for each track that slows the vehicle down.
-[[nodiscard]] Vec3 stoppable_command(const world::Situation& situation, const Vec3& wanted, float fastest,
-                                     WorkBudget& budget) noexcept;
+/// Where not even a stop is clear of a track, a vehicle that stands leaves its reach at 0.3 m/s, else all would stand
+/// for ever. One that moves stops, as long as that is `counted_on`; else, as at a take-over that comes too late, it
+/// flies `wanted` if that comes less near. `wanted` where stopping is not clear of anything else and no better than
+/// `wanted` there; and for a fixed wing, which cannot stop. Without budget: a stop. O(tracks), six times for each track
+/// that slows the vehicle down.
+[[nodiscard]] StoppableCommand stoppable_command(const world::Situation& situation, const Vec3& wanted, float fastest,
+                                                 WorkBudget& budget, bool counted_on = true,
+                                                 Seconds ahead = 0.0F) noexcept;
 
 }  // namespace jink::avoid

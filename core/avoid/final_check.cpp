@@ -39,6 +39,11 @@ bool predict_tail(const world::Situation& s, const Settings& settings, WorkBudge
         return false;
     }
     path::extend_by_velocity_command(stops ? Vec3(Vec3::Zero()) : flight.velocity, span, step, s.limits, flight);
+    if (stops && !flight.sagittas.empty()) {
+        // What is left of the velocity fades with the lag.
+        flight.sagittas.back().any += flight.velocity.norm() * s.limits.velocity_lag;
+        flight.sagittas.back().vertical += std::abs(flight.velocity.z()) * s.limits.velocity_lag;
+    }
     return true;
 }
 

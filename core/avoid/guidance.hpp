@@ -24,6 +24,7 @@ struct Guidance {
     world::Alert alert = world::Alert::none;  ///< of aircraft that the nominal path comes too near to
     bool on_other = false;                    ///< that is the other nominal path, because its conflict comes first
     bool other_conflict = false;              ///< control is kept because the other nominal path is not clear
+    bool for_stop = false;                    ///< control is wanted or kept so that all can stop (common_stop.hpp)
     bool blocked = false;                     ///< given up (Settings::patience): the autopilot has to hold
     float margin = world::kSeparationCap;     ///< least predicted margin of what is flown or offered [m]
     world::ManoeuvreKind kind = world::ManoeuvreKind::follow_path;
@@ -56,6 +57,7 @@ struct Diagnostics {
     std::uint32_t rejoined = 0;
     std::uint32_t on_other = 0;      ///< conflicts begun on the other nominal path
     std::uint32_t kept_control = 0;  ///< updates in which the other nominal path alone kept control
+    std::uint32_t for_stop = 0;      ///< updates with Guidance::for_stop
     std::uint32_t blocked = 0;       ///< times given up in front of static threats
     std::uint32_t control_lost = 0;  ///< control ended while it was wanted
     std::uint32_t budget_spent = 0;  ///< updates that ran out of work budget

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Two nominal paths: which one counts, and when control may be given back.
+// Two nominal paths: which one counts, when control may be given back, and when it is taken so that all can stop.
+#include <limits>
+
+#include "core/avoid/common_stop.hpp"
 #include "core/avoid/tick.hpp"
 
 namespace jink::avoid {
@@ -8,6 +11,7 @@ namespace {
 /// The other nominal path counts when its loss of separation comes first by more than this, and the one that counts
 /// stays: no change for noise [s].
 constexpr Seconds kClearlyFirst = 0.5F;
+constexpr float kAnySpeed = std::numeric_limits<float>::infinity();
 
 }  // namespace
 
@@ -43,10 +47,29 @@ void StateMachine::choose_nominal(Tick& tick) noexcept
     }
 }
 
-/// Not into a conflict of the other nominal path, and not before control has been kept for a while.
+/// Whether all vehicles that avoid each other can stop if this one flies its nominal path for `ahead` before it does:
+/// in this time nobody holds it back. What all can stop after is in `tick.out.velocity` then.
+bool StateMachine::leaves_stop(Tick& tick, Seconds ahead) noexcept
+{
+    follow_nominal(tick);
+    if (tick.out.velocity.squaredNorm() == 0.0F) {
+        return true;  // nothing is won by taking control of a vehicle that stays
+    }
+    const Vec3 wanted = tick.out.velocity;
+    tick.out.velocity = stoppable_command(tick.s, wanted, kAnySpeed, tick.budget, true, ahead).velocity;
+    tick.out.for_stop = tick.out.velocity != wanted;
+    diagnostics_.for_stop += tick.out.for_stop ? 1U : 0U;
+    return !tick.out.for_stop;
+}
+
+/// Not into a conflict of the other nominal path, not where that leaves no stop, and not before control has been kept
+/// for a while.
 bool StateMachine::may_give_back(Tick& tick) noexcept
 {
     if (control_since_ && tick.s.now - *control_since_ < settings_.least_control) {
+        return false;
+    }
+    if (!leaves_stop(tick, settings_.reserve + settings_.settle)) {
         return false;
     }
     if (tick.other == nullptr) {

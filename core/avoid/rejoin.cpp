@@ -16,8 +16,16 @@ float cross_track(const world::Situation& s) noexcept
 
 namespace {
 
-/// Time in which what is left to a bound of the airspace is used up at most.
-constexpr Seconds kBoundTime = 1.0F;
+/// Speed towards a bound that is `left` away: that uses it up in a second at most, and from which the vehicle can still
+/// stop in front of it, its lag included [m/s].
+float speed_to_bound(float left, float acceleration, const world::Situation& s) noexcept
+{
+    constexpr Seconds kBoundTime = 1.0F;
+    constexpr Seconds kUntilNext = 0.05F;  // a command is flown until the next one
+    const Seconds lag = s.limits.velocity_lag + s.rules.latency + kUntilNext;
+    const float way = std::max(left, 0.0F);
+    return std::min(way / kBoundTime, acceleration * (std::sqrt(lag * lag + 2.0F * way / acceleration) - lag));
+}
 
 /// `velocity` without what would take the vehicle out of the airspace, or further out: where the leg itself lies
 /// outside, the autopilot may go there, but not by our command.
@@ -30,16 +38,18 @@ Vec3 kept_inside(const world::Situation& s, const Vec3& velocity) noexcept
     for (const world::Threat& bound : s.threats) {
         const float extra = bound.growth.radius;
         if (bound.form == world::ThreatForm::floor) {
-            lowest = std::min(0.0F, bound.position.z() - at.z() + half.z() + extra) / kBoundTime;
+            const float left = at.z() - half.z() - extra - bound.position.z();
+            lowest = -speed_to_bound(left, s.limits.max_vertical_acceleration, s);
         } else if (bound.form == world::ThreatForm::ceiling) {
-            kept.z() = std::min(kept.z(), std::max(0.0F, bound.position.z() - at.z() - half.z() - extra) / kBoundTime);
+            const float left = bound.position.z() - at.z() - half.z() - extra;
+            kept.z() = std::min(kept.z(), speed_to_bound(left, s.limits.max_vertical_acceleration, s));
         } else if (bound.form == world::ThreatForm::keep_in) {
             const Vec3 from_home(at.x() - bound.position.x(), at.y() - bound.position.y(), 0.0F);
             const float off = from_home.norm();
             if (off > 0.0F) {
                 const float left = bound.level_radius - off - half.head<2>().norm() - extra;
                 const float outward = from_home.dot(kept) / off;
-                const float most = std::max(0.0F, left) / kBoundTime;
+                const float most = speed_to_bound(left, s.limits.max_acceleration, s);
                 kept -= (std::max(0.0F, outward - most) / off) * from_home;
             }
         } else {
@@ -95,12 +105,17 @@ bool StateMachine::is_back(const Tick& tick) const noexcept
            (parallel.off.head<2>().norm() <= on_leg || parallel.left <= 0.0F);
 }
 
+/// Along the nominal path, at its end a stop [m/s].
+static Vec3 nominal_velocity(const world::Way& nominal) noexcept
+{
+    return nominal.length > 0.0F ? Vec3(nominal.direction * nominal.speed) : Vec3(Vec3::Zero());
+}
+
 void StateMachine::follow_nominal(Tick& tick) const noexcept
 {
     tick.out.wants_control = true;
     tick.out.kind = world::ManoeuvreKind::velocity;
-    const Vec3 wanted =
-        tick.nominal.length > 0.0F ? Vec3(tick.nominal.direction * tick.nominal.speed) : Vec3(Vec3::Zero());
+    const Vec3 wanted = nominal_velocity(tick.nominal);
     tick.out.velocity = kept_inside(tick.s, wanted);
     tick.removed = wanted - tick.out.velocity;
 }
@@ -127,23 +142,64 @@ bool StateMachine::keep_parallel(Tick& tick) noexcept
     return true;
 }
 
-/// A fixed wing needs seconds to turn to its nominal path, and flies a long arc meanwhile, which that path does not
-/// show. While the arc is not clear the wing keeps its course; where the course is not clear either, it falls back.
-bool StateMachine::keep_course(Tick& tick) noexcept
+/// The flight back is another one than the straight nominal path that conflicts are searched on: until the vehicle has
+/// turned to that, it goes on with what its velocity has across it, a fixed wing for seconds and on a long arc. So far
+/// ahead the flight is checked; 0 where the vehicle stands or is on its way already.
+Seconds StateMachine::time_to_turn(const Tick& tick) const noexcept
 {
     /// A half turn at 30 degrees of bank and 18 m/s takes 10 s, a quarter 5 s.
     constexpr Seconds kTurning = 8.0F;
-    if (tick.s.limits.kind != vehicle::VehicleKind::fixed_wing ||
-        world::of_kind(tick.s.threats, world::ThreatKind::track).empty()) {
+    /// Slower than this across the path, the flight is the path [m/s].
+    constexpr float kAlong = 0.3F;
+    const vehicle::VehicleLimits& limits = tick.s.limits;
+    if (limits.kind == vehicle::VehicleKind::fixed_wing) {
+        return std::min(tick.s.rules.lookahead, kTurning);
+    }
+    const Vec3& velocity = tick.s.own.velocity;
+    const Vec3 across = velocity - std::max(velocity.dot(tick.nominal.direction), 0.0F) * tick.nominal.direction;
+    if (across.norm() < kAlong) {
+        return 0.0F;
+    }
+    return std::max(across.head<2>().norm() / limits.max_acceleration,
+                    std::abs(across.z()) / limits.max_vertical_acceleration) +
+           limits.velocity_lag + settings_.reserve;
+}
+
+/// Clear of all but the bounds of the airspace, which `kept_inside` keeps.
+static float margin_inside(const world::Situation& s, const Vec3& command, Seconds ahead, const Settings& settings,
+                           WorkBudget& budget) noexcept
+{
+    const auto first = std::ranges::find_if(s.threats, [](const world::Threat& t) {
+        return t.form != world::ThreatForm::floor && t.form != world::ThreatForm::ceiling &&
+               t.form != world::ThreatForm::keep_in;
+    });
+    world::Situation others = s;
+    others.threats = s.threats.subspan(static_cast<std::size_t>(first - s.threats.begin()));
+    return command_margin(others, command, ahead, settings, budget);
+}
+
+/// Whether that flight is clear.
+bool StateMachine::leads_back(Tick& tick) const noexcept
+{
+    const Seconds ahead = time_to_turn(tick);
+    if (!tick.back_margin && ahead > 0.0F) {
+        const Vec3 back = kept_inside(tick.s, nominal_velocity(tick.nominal));
+        tick.back_margin = margin_inside(tick.s, back, ahead, settings_, tick.budget);
+    }
+    return !tick.back_margin || *tick.back_margin >= 0.0F;
+}
+
+/// While the flight back is not clear the vehicle keeps its course; where the course is not clear either, it falls
+/// back.
+bool StateMachine::keep_course(Tick& tick) noexcept
+{
+    if (leads_back(tick)) {
         return false;
     }
-    const Seconds ahead = std::min(tick.s.rules.lookahead, kTurning);
-    const Vec3 back = kept_inside(tick.s, tick.nominal.direction * tick.nominal.speed);
-    if (command_margin(tick.s, back, ahead, settings_, tick.budget) >= 0.0F) {
-        return false;
-    }
-    const Vec3 on = kept_inside(tick.s, {tick.s.own.velocity.x(), tick.s.own.velocity.y(), 0.0F});
-    const float margin = command_margin(tick.s, on, ahead, settings_, tick.budget);
+    Vec3 on = tick.s.own.velocity;
+    on.z() = tick.s.limits.kind == vehicle::VehicleKind::fixed_wing ? 0.0F : on.z();
+    on = kept_inside(tick.s, on);
+    const float margin = margin_inside(tick.s, on, time_to_turn(tick), settings_, tick.budget);
     if (!(margin >= 0.0F)) {
         fall_back(tick);
         return true;

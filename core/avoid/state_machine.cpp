@@ -252,8 +252,9 @@ void StateMachine::watch(Tick& tick) noexcept
         if (tick.in_control) {
             // Being given back: keep to the leg meanwhile.
             follow_nominal(tick);
-            tick.out.wants_control = cross_track(tick.s) > 2.0F * settings_.on_leg &&
-                                     !is_held_by_bounds(tick.s, tick.removed, tick.out.velocity, settings_.on_leg);
+            const bool off = cross_track(tick.s) > 2.0F * settings_.on_leg &&
+                             !is_held_by_bounds(tick.s, tick.removed, tick.out.velocity, settings_.on_leg);
+            tick.out.wants_control = off || !leaves_stop(tick, settings_.reserve);
             if (tick.out.wants_control) {
                 control_since_ = tick.s.now;
                 enter(Phase::rejoining);
@@ -264,6 +265,7 @@ void StateMachine::watch(Tick& tick) noexcept
             flying_.reset();
         }
         fallback_.reset();
+        tick.out.wants_control = !leaves_stop(tick, settings_.reserve);
         return;
     }
     if (tick.in_control) {
@@ -300,15 +302,18 @@ void StateMachine::keep_stoppable(Tick& tick) noexcept
     const bool rises = held_back_ && tick.s.commanded != nullptr;
     held_back_ = false;
     if (!steers) {
+        stop_counted_on_ = false;
         return;
     }
     const float fastest =
         rises ? tick.s.commanded->velocity.norm() + tick.s.limits.max_acceleration * (tick.s.now - tick.s.commanded->at)
               : std::numeric_limits<float>::infinity();
-    const Vec3 command = stoppable_command(tick.s, tick.out.velocity, fastest, tick.budget);
-    held_back_ = command != tick.out.velocity;
+    const StoppableCommand command =
+        stoppable_command(tick.s, tick.out.velocity, fastest, tick.budget, stop_counted_on_);
+    stop_counted_on_ = command.counted_on;
+    held_back_ = command.velocity != tick.out.velocity;
     diagnostics_.held_back += held_back_ ? 1U : 0U;
-    tick.out.velocity = command;
+    tick.out.velocity = command.velocity;
 }
 
 Guidance StateMachine::update(const world::Situation& given, const world::Reference* other, bool in_control,

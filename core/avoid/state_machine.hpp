@@ -91,6 +91,8 @@ private:
     void rejoin(Tick& tick) noexcept;
     void follow_nominal(Tick& tick) const noexcept;
     [[nodiscard]] bool keep_parallel(Tick& tick) noexcept;
+    [[nodiscard]] Seconds time_to_turn(const Tick& tick) const noexcept;
+    [[nodiscard]] bool leads_back(Tick& tick) const noexcept;
     [[nodiscard]] bool keep_course(Tick& tick) noexcept;
     [[nodiscard]] bool is_bent_into_conflict(Tick& tick) const noexcept;
     [[nodiscard]] bool is_back(const Tick& tick) const noexcept;
@@ -98,6 +100,7 @@ private:
     [[nodiscard]] bool counts(const Tick& tick, const world::Conflict& conflict) const noexcept;
     void choose_nominal(Tick& tick) noexcept;
     [[nodiscard]] bool may_give_back(Tick& tick) noexcept;
+    [[nodiscard]] bool leaves_stop(Tick& tick, Seconds ahead) noexcept;
 
     Settings settings_;
     Diagnostics diagnostics_;
@@ -118,6 +121,7 @@ private:
     Seconds backed_off_ = 0.0F;        ///< in this conflict
     TimePoint last_update_;
     bool held_back_ = false;        ///< the last command, so that all can stop
+    bool stop_counted_on_ = false;  ///< all could stop since this vehicle is steered from here
     Vec3 block_at_ = Vec3::Zero();  ///< where the vehicle is since block_since_, more or less
     TimePoint block_since_;         ///< moved on where the vehicle does not brake
     world::Manoeuvre answer_;       ///< of the last plan

@@ -44,9 +44,10 @@ struct StateMachine::Tick {
     std::uint32_t slice = 0;  ///< left for planning [work units]
     world::Way nominal;
     Guidance out;
-    Vec3 removed = Vec3::Zero();  ///< off the velocity back to the leg, by bounds of the airspace [m/s]
-    bool ran_out = false;         ///< of work units, planning or altogether
-    bool planned = false;         ///< a plan was asked for: in slices, this update's has been made
+    Vec3 removed = Vec3::Zero();         ///< off the velocity back to the leg, by bounds of the airspace [m/s]
+    std::optional<float> back_margin{};  ///< of the flight back to the nominal path, once it is checked [m]
+    bool ran_out = false;                ///< of work units, planning or altogether
+    bool planned = false;                ///< a plan was asked for: in slices, this update's has been made
 };
 
 }  // namespace jink::avoid

@@ -59,6 +59,7 @@ constexpr std::array kAvoidCounters = std::to_array<Counter<avoid::Diagnostics>>
     {"rejoined", &avoid::Diagnostics::rejoined},
     {"on_other", &avoid::Diagnostics::on_other},
     {"kept_control", &avoid::Diagnostics::kept_control},
+    {"for_stop", &avoid::Diagnostics::for_stop},
     {"blocked", &avoid::Diagnostics::blocked},
     {"control_lost", &avoid::Diagnostics::control_lost},
     {"budget_spent", &avoid::Diagnostics::budget_spent},
