@@ -16,15 +16,16 @@ float cross_track(const world::Situation& s) noexcept
 
 namespace {
 
-/// Speed towards a bound that is `left` away: that uses it up in a second at most, and from which the vehicle can still
-/// stop in front of it, its lag included [m/s].
+/// Speed towards a bound that is `left` away: that leaves a second at least until there, and as long as the vehicle
+/// needs to come there without a swing past it; and from which it can still stop, its lag included [m/s].
 float speed_to_bound(float left, float acceleration, const world::Situation& s) noexcept
 {
     constexpr Seconds kBoundTime = 1.0F;
     constexpr Seconds kUntilNext = 0.05F;  // a command is flown until the next one
     const Seconds lag = s.limits.velocity_lag + s.rules.latency + kUntilNext;
     const float way = std::max(left, 0.0F);
-    return std::min(way / kBoundTime, acceleration * (std::sqrt(lag * lag + 2.0F * way / acceleration) - lag));
+    return std::min(way / std::max(kBoundTime, 4.0F * s.limits.velocity_lag),
+                    acceleration * (std::sqrt(lag * lag + 2.0F * way / acceleration) - lag));
 }
 
 /// `velocity` without what would take the vehicle out of the airspace, or further out: where the leg itself lies

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/property/core/geometry/oracle.hpp"
 #include "toolchain/sim/swarm_command.hpp"
 
 namespace jink::sim {
@@ -271,6 +272,81 @@ TEST(Swarm, OfTwoThatCrossWhileTheyGainSpeedKeepsItsSeparations)
                 EXPECT_GE(result.margin, 1.0) << sector << " " << methods << " " << to_line(result);
             }
         }
+    }
+}
+
+/// A vehicle that turns at its waypoint comes back at others, which had counted on it flying on; its autopilot
+/// accelerates there as it likes, and nobody holds it back. Swarms in which bodies once touched, or nearly.
+TEST(Swarm, ThatTurnsBackTouchesNobody)
+{
+    struct Case {
+        unsigned vehicles;
+        double circle, sector, tilt, cruise, delay, loss, level, vertical, body;
+        double methods, others;  // others 0: the same
+        Stack stack;
+        std::uint64_t seed;
+    };
+    constexpr Case kCases[] = {
+        {2, 44.5, 314, 0, 10.65, 0.38, 0.13, 2.5, 2.0, 0.5, 7, 1, Stack::ardupilot, 7001681},
+        {2, 32.1, 51, 0, 9.83, 0.49, 0.33, 0.7, 0.5, 0.25, 3, 0, Stack::ardupilot, 7002211},
+        {2, 32.1, 51, 0, 9.83, 0.49, 0.33, 0.7, 0.5, 0.25, 3, 0, Stack::ardupilot, 7002214},
+        {3, 48.1, 360, 28, 13.59, 0.46, 0.08, 2.5, 2.0, 0.5, 1, 0, Stack::ardupilot, 7000831},
+        {3, 14.9, 40, 88, 7.4, 0.06, 0.1, 0.7, 0.5, 0.25, 7, 5, Stack::ardupilot, 7001322},
+        {3, 13.1, 90, 38, 11.89, 0.34, 0.1, 2.5, 2.0, 0.5, 2, 0, Stack::px4, 7002711},
+    };
+    for (const Case& c : kCases) {
+        SwarmSetup setup;
+        setup.vehicles = c.vehicles;
+        setup.circle = c.circle;
+        setup.sector = c.sector;
+        setup.tilt = c.tilt;
+        setup.cruise = c.cruise;
+        setup.back = true;
+        setup.level = c.level;
+        setup.vertical = c.vertical;
+        setup.body = c.body;
+        setup.delay = c.delay;
+        setup.loss = c.loss;
+        setup.duration = 90.0;
+        setup.stack = c.stack;
+        setup.parameters = {{"JNK_METHODS", c.methods}};
+        if (c.others > 0.0) {
+            setup.others = {{"JNK_METHODS", c.others}};
+        }
+        const SwarmResult result = fly_swarm(setup, c.seed, {});
+        EXPECT_EQ(result.collisions, 0U) << to_line(result);
+        EXPECT_TRUE(result.faults.empty()) << to_line(result);
+        EXPECT_GE(result.margin, 0.9) << to_line(result);
+    }
+}
+
+/// Whatever the swarm: no contact.
+TEST(Swarm, ThatTurnsBackTouchesNobodyAtRandom)
+{
+    const std::size_t cases = geometry::oracle::case_count(40);
+    for (std::size_t i = 0; i < cases; ++i) {
+        const std::uint64_t seed = geometry::oracle::seed_of(77) + i;
+        Random random(seed);
+        SwarmSetup setup;
+        setup.vehicles = 2 + static_cast<unsigned>(random.below(2));
+        setup.back = true;
+        setup.cruise = double(random.uniform(6.0F, 15.0F));
+        setup.delay = double(random.uniform(0.0F, 1.0F));
+        setup.loss = double(random.uniform(0.0F, 0.6F));
+        setup.stack = random.below(2) == 0 ? Stack::px4 : Stack::ardupilot;
+        const double size = double(random.uniform(0.25F, 1.0F));
+        setup.body = size;
+        setup.level = 5.0 * size;
+        setup.vertical = 3.0 * size;
+        setup.circle = double(random.uniform(12.0F, 50.0F));
+        setup.sector = random.below(2) == 0 ? 360.0 : double(random.uniform(60.0F, 300.0F));
+        setup.tilt = random.below(3) == 0 ? double(random.uniform(0.0F, 90.0F)) : 0.0;
+        setup.duration = 90.0;
+        setup.parameters = {{"JNK_METHODS", double(1 + random.below(7))}};
+        setup.others = {{"JNK_METHODS", double(1 + random.below(7))}};
+        const SwarmResult result = fly_swarm(setup, seed, {});
+        EXPECT_EQ(result.collisions, 0U) << seed << ": " << to_line(result);
+        EXPECT_TRUE(result.faults.empty()) << seed << ": " << to_line(result);
     }
 }
 

@@ -71,7 +71,7 @@ void turn(vehicle::VehicleState& own, const Vec3& command, const vehicle::Vehicl
     own.yaw = std::atan2(own.velocity.y(), own.velocity.x());
 }
 
-/// Closed cylinders beside the leg, no traffic: wherever straight on is clear, the turn back is flown clear of them
+/// Closed cylinders near the leg, no traffic: wherever straight on is clear, the turn back is flown clear of them
 /// too.
 TEST(WayBack, AFixedWingTurnsAroundWhatStandsBesideItsLeg)
 {
