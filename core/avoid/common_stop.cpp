@@ -99,9 +99,9 @@ struct OwnStop {
 
 class CommonStop {
 public:
-    CommonStop(const world::Situation& s, const Vec3& wanted, float fastest, bool counted_on, Seconds ahead,
+    CommonStop(const world::Situation& s, const Vec3& wanted, float fastest, bool evades, Seconds ahead,
                WorkBudget& budget) noexcept
-        : s_(s), wanted_(wanted), counted_on_(counted_on), ahead_(ahead), latency_(latency_of(s) + ahead),
+        : s_(s), wanted_(wanted), wanted_evades_(evades), ahead_(ahead), latency_(latency_of(s) + ahead),
           most_(fastest < wanted.norm() ? fastest / wanted.norm() : 1.0F),
           tracks_(world::of_kind(s.threats, world::ThreatKind::track)), budget_(budget),
           acceleration_(std::max(s.limits.max_acceleration, s.limits.max_vertical_acceleration))
@@ -126,7 +126,7 @@ public:
     }
 
     /// See stoppable_command.
-    [[nodiscard, gnu::cold, gnu::noinline]] StoppableCommand command() noexcept
+    [[nodiscard, gnu::cold, gnu::noinline]] Vec3 command() noexcept
     {
         OwnStop own;
         float share = most_;
@@ -137,9 +137,8 @@ public:
             }
         }
         if (share >= 1.0F) {
-            return {wanted_, true};
+            return wanted_;
         }
-        const bool stops = away_ == Vec3::Zero() && !budget_.exhausted();
         Vec3 command = share * wanted_;
         if (share <= 0.0F || !is_clear(command, own)) {
             command = evades(own) ? wanted_ : way_out(own);
@@ -150,7 +149,7 @@ public:
             fly(wanted_, own);
             command = margin_to_rest(own) >= rest && !budget_.exhausted() ? wanted_ : command;
         }
-        return {command, stops || counted_on_};
+        return command;
     }
 
 private:
@@ -254,10 +253,10 @@ private:
         });
     }
 
-    /// Of a vehicle that moves: whether a stop comes too near to a track, and what is wanted less so.
+    /// Of a vehicle that moves: whether what is wanted comes less near to the tracks than a stop.
     [[nodiscard, gnu::cold, gnu::noinline]] bool evades(OwnStop& own) noexcept
     {
-        if (counted_on_ || s_.own.velocity.norm() <= 2.0F * kLeaving || !(away_.norm() > kTiny)) {
+        if (!wanted_evades_ || s_.own.velocity.norm() <= 2.0F * kLeaving || !(away_.norm() > kTiny)) {
             return false;
         }
         fly(Vec3::Zero(), own);
@@ -302,7 +301,7 @@ private:
 
     const world::Situation& s_;
     const Vec3& wanted_;
-    bool counted_on_;  ///< a stop, by the others
+    bool wanted_evades_;
     Seconds ahead_;    ///< before the own vehicle stops, and perhaps the others
     Seconds latency_;  ///< and with the latency
     float most_;       ///< share of what is wanted, at most
@@ -315,14 +314,14 @@ private:
 
 }  // namespace
 
-StoppableCommand stoppable_command(const world::Situation& s, const Vec3& wanted, float fastest, WorkBudget& budget,
-                                   bool counted_on, Seconds ahead) noexcept
+Vec3 stoppable_command(const world::Situation& s, const Vec3& wanted, float fastest, WorkBudget& budget, bool evades,
+                       Seconds ahead) noexcept
 {
     if (s.limits.kind != vehicle::VehicleKind::multirotor || s.threats.data() == nullptr || !is_finite(wanted)) {
-        return {wanted, false};
+        return wanted;
     }
-    CommonStop stop(s, wanted, fastest, counted_on, ahead, budget);
-    return stop.has_tracks() ? stop.command() : StoppableCommand{wanted, false};
+    CommonStop stop(s, wanted, fastest, evades, ahead, budget);
+    return stop.has_tracks() ? stop.command() : wanted;
 }
 
 }  // namespace jink::avoid

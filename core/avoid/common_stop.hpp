@@ -8,13 +8,6 @@
 
 namespace jink::avoid {
 
-struct StoppableCommand {
-    Vec3 velocity = Vec3::Zero();  ///< [m/s]
-    /// All cooperative tracks could stop with the own vehicle, after this command or an earlier one since it was
-    /// steered from here. False where there are none.
-    bool counted_on = false;
-};
-
 /// The command that is flown in place of `wanted`, so that the own vehicle and all cooperative tracks can still stop
 /// without contact: `wanted` where it leaves that, else so much of it, in eighths, as does; where none does, a stop.
 /// A part of `wanted` is never faster than `fastest` [m/s], which does not limit `wanted` flown whole: the age of
@@ -32,13 +25,12 @@ struct StoppableCommand {
 /// earlier one may lead to; and one who finds none that is clear stops, which the other one has counted on. So do any
 /// number of vehicles. What this assumes: docs/guides/common_stop.md.
 ///
-/// Where not even a stop is clear of a track, a vehicle that stands leaves its reach at 0.3 m/s, else all would stand
-/// for ever. One that moves stops, as long as that is `counted_on`; else, as at a take-over that comes too late, it
-/// flies `wanted` if that comes less near. `wanted` where stopping is not clear of anything else and no better than
+/// A vehicle that stands where not even that is clear of a track leaves its reach at 0.3 m/s, else all would stand for
+/// ever. One that moves flies a `wanted` that `evades` (a manoeuvre's, or the fallback's) where that comes less near
+/// than a stop: control came too late then. `wanted` where stopping is not clear of anything else and no better than
 /// `wanted` there; and for a fixed wing, which cannot stop. Without budget: a stop. O(tracks), six times for each track
 /// that slows the vehicle down.
-[[nodiscard]] StoppableCommand stoppable_command(const world::Situation& situation, const Vec3& wanted, float fastest,
-                                                 WorkBudget& budget, bool counted_on = true,
-                                                 Seconds ahead = 0.0F) noexcept;
+[[nodiscard]] Vec3 stoppable_command(const world::Situation& situation, const Vec3& wanted, float fastest,
+                                     WorkBudget& budget, bool evades = false, Seconds ahead = 0.0F) noexcept;
 
 }  // namespace jink::avoid

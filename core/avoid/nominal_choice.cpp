@@ -56,7 +56,7 @@ bool StateMachine::leaves_stop(Tick& tick, Seconds ahead) noexcept
         return true;  // nothing is won by taking control of a vehicle that stays
     }
     const Vec3 wanted = tick.out.velocity;
-    tick.out.velocity = stoppable_command(tick.s, wanted, kAnySpeed, tick.budget, true, ahead).velocity;
+    tick.out.velocity = stoppable_command(tick.s, wanted, kAnySpeed, tick.budget, false, ahead);
     tick.out.for_stop = tick.out.velocity != wanted;
     diagnostics_.for_stop += tick.out.for_stop ? 1U : 0U;
     return !tick.out.for_stop;

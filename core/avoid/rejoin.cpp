@@ -170,12 +170,14 @@ Seconds StateMachine::time_to_turn(const Tick& tick) const noexcept
 static float margin_inside(const world::Situation& s, const Vec3& command, Seconds ahead, const Settings& settings,
                            WorkBudget& budget) noexcept
 {
-    const auto first = std::ranges::find_if(s.threats, [](const world::Threat& t) {
-        return t.form != world::ThreatForm::floor && t.form != world::ThreatForm::ceiling &&
-               t.form != world::ThreatForm::keep_in;
-    });
+    const auto is_bound = [](const world::Threat& t) {
+        return t.form == world::ThreatForm::floor || t.form == world::ThreatForm::ceiling ||
+               t.form == world::ThreatForm::keep_in;
+    };
     world::Situation others = s;
-    others.threats = s.threats.subspan(static_cast<std::size_t>(first - s.threats.begin()));
+    while (!others.threats.empty() && is_bound(others.threats.front())) {
+        others.threats = {others.threats.data() + 1, others.threats.size() - 1};
+    }
     return command_margin(others, command, ahead, settings, budget);
 }
 

@@ -302,18 +302,16 @@ void StateMachine::keep_stoppable(Tick& tick) noexcept
     const bool rises = held_back_ && tick.s.commanded != nullptr;
     held_back_ = false;
     if (!steers) {
-        stop_counted_on_ = false;
         return;
     }
     const float fastest =
         rises ? tick.s.commanded->velocity.norm() + tick.s.limits.max_acceleration * (tick.s.now - tick.s.commanded->at)
               : std::numeric_limits<float>::infinity();
-    const StoppableCommand command =
-        stoppable_command(tick.s, tick.out.velocity, fastest, tick.budget, stop_counted_on_);
-    stop_counted_on_ = command.counted_on;
-    held_back_ = command.velocity != tick.out.velocity;
+    const bool evades = phase_ == Phase::avoiding || phase_ == Phase::braking;
+    const Vec3 command = stoppable_command(tick.s, tick.out.velocity, fastest, tick.budget, evades);
+    held_back_ = command != tick.out.velocity;
     diagnostics_.held_back += held_back_ ? 1U : 0U;
-    tick.out.velocity = command.velocity;
+    tick.out.velocity = command;
 }
 
 Guidance StateMachine::update(const world::Situation& given, const world::Reference* other, bool in_control,

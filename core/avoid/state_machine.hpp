@@ -121,7 +121,6 @@ private:
     Seconds backed_off_ = 0.0F;        ///< in this conflict
     TimePoint last_update_;
     bool held_back_ = false;        ///< the last command, so that all can stop
-    bool stop_counted_on_ = false;  ///< all could stop since this vehicle is steered from here
     Vec3 block_at_ = Vec3::Zero();  ///< where the vehicle is since block_since_, more or less
     TimePoint block_since_;         ///< moved on where the vehicle does not brake
     world::Manoeuvre answer_;       ///< of the last plan

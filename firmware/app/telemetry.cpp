@@ -2,6 +2,7 @@
 #include "firmware/app/telemetry.hpp"
 
 #include <algorithm>
+#include <bit>
 
 #include "firmware/app/conflict_warning.hpp"
 #include "firmware/app/near_field.hpp"
@@ -19,8 +20,6 @@ constexpr Seconds kConflictOver = 5.0F;
 constexpr Seconds kChoicePeriod = 2.0F;
 /// A vehicle counts as not steerable after so many HEARTBEATs: EXTENDED_SYS_STATE and parameters may come later.
 constexpr int kUnsteerableReports = 6;
-/// Place of the last digit of Hex.
-constexpr std::size_t kLastDigit = 7;
 
 }  // namespace
 
@@ -85,10 +84,9 @@ void Telemetry::report_to_autopilot(TimePoint now, const StepReport& report, con
     const bool changed = report.state != heartbeat_.state;
     if (changed && report.state == link::SystemState::critical) {
         ++counts_.faults;
-        Text digits;
-        digits << Hex{report.faults};
+        const unsigned digits = std::max((static_cast<unsigned>(std::bit_width(report.faults)) + 3U) / 4U, 1U);
         Text text;  // as the status line of jinkd has it
-        text << "jink: fault 0x" << digits.view().substr(std::min(digits.view().find_first_not_of('0'), kLastDigit));
+        text << "jink: fault 0x" << Hex{report.faults, digits};
         outbox.say(link::Severity::critical, text.view());
     }
     if (!heartbeat_.is_sent || changed || now - heartbeat_.at >= kHeartbeatPeriod) {

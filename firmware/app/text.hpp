@@ -8,9 +8,10 @@
 
 namespace jink::app {
 
-/// Eight hexadecimal digits.
+/// The last `digits` hexadecimal digits, at most eight.
 struct Hex {
     std::uint32_t value;
+    unsigned digits = 8;
 };
 
 /// Builds a STATUSTEXT of at most 50 characters without the C library's formatting, which would bring an allocator into
@@ -44,7 +45,7 @@ public:
 
     Text& operator<<(Hex hex) noexcept
     {
-        for (unsigned shift = 32; shift > 0; shift -= 4) {
+        for (unsigned shift = 4U * hex.digits; shift > 0; shift -= 4) {
             *this << std::string_view("0123456789ABCDEF").substr(hex.value >> (shift - 4U) & 0xFU, 1);
         }
         return *this;

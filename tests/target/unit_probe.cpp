@@ -292,7 +292,7 @@ std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
                 }).value_or(-1.0F);
         break;
     case Work::common_stop:
-        sink_ = counted([&] { return avoid::stoppable_command(s, command, command.norm(), budget); }).velocity.x();
+        sink_ = counted([&] { return avoid::stoppable_command(s, command, command.norm(), budget); }).x();
         break;
     case Work::command: sink_ = counted([&] { return avoid::command_margin(s, command, settings, budget); }); break;
     case Work::orca_tracks:

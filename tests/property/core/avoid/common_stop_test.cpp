@@ -119,7 +119,7 @@ struct Crowd {
         const Vec3& wants = vehicles[own].wants;
         Flier& v = vehicles[own];
         const float fastest = v.is_held_back ? v.said.norm() + limits.max_acceleration * kTick : kAny;
-        v.said = stoppable_command(s, wants, fastest, budget).velocity;
+        v.said = stoppable_command(s, wants, fastest, budget);
         v.is_held_back = v.said != wants;
         slowed += v.is_held_back ? 1 : 0;
         return v.said;
@@ -218,7 +218,7 @@ struct Pair : world::test::Scene {
     [[nodiscard]] Vec3 flown(const Vec3& wanted = {4, 0, 0}, std::uint32_t units = 100'000, float fastest = kAny) const
     {
         WorkBudget budget(units);
-        return stoppable_command(situation(), wanted, fastest, budget).velocity;
+        return stoppable_command(situation(), wanted, fastest, budget);
     }
 };
 
