@@ -39,22 +39,22 @@ struct Transition {
 
 /// All that there are. One update may make several. docs/guides/state_machine.md draws them, and repeats the comments.
 inline constexpr std::array kTransitions = std::to_array<Transition>({
-    {Phase::watching, Phase::rejoining},         // control taken
-    {Phase::giving_back, Phase::watching},       // control released or reset
-    {Phase::giving_back, Phase::rejoining},      // conflict, or off the leg again
-    {Phase::given_up, Phase::watching},          // control released or reset, or traffic comes
-    {Phase::rejoining, Phase::giving_back},      // on the leg, both nominal paths clear, control held long enough
+    {Phase::watching, Phase::rejoining},     // control taken
+    {Phase::giving_back, Phase::watching},   // control released or reset
+    {Phase::giving_back, Phase::rejoining},  // conflict, off the leg again, or not all can stop
+    {Phase::given_up, Phase::watching},      // control released or reset, or traffic comes
+    {Phase::rejoining, Phase::giving_back},  // on the leg, nominal paths clear, all can stop, control held long enough
     {Phase::rejoining, Phase::parallel_offset},  // path back in conflict, flying parallel to the leg is clear
     {Phase::rejoining, Phase::avoiding},         // conflict due, a method has a safe answer
-    {Phase::rejoining, Phase::braking},   // conflict urgent, or no clear course of a fixed wing, without an answer
+    {Phase::rejoining, Phase::braking},   // conflict urgent without an answer, or neither turn back nor course clear
     {Phase::rejoining, Phase::watching},  // control lost or reset
     {Phase::parallel_offset, Phase::rejoining},  // path back clear, or flying parallel to the leg is not
     {Phase::parallel_offset, Phase::watching},   // control lost or reset
-    {Phase::avoiding, Phase::rejoining},         // manoeuvre flown to its end, or nominal path clear for a while
+    {Phase::avoiding, Phase::rejoining},         // manoeuvre flown to its end, or nominal path and turn back clear
     {Phase::avoiding, Phase::parallel_offset},   // manoeuvre unsafe, slow or heading back, flying parallel is clear
     {Phase::avoiding, Phase::braking},           // manoeuvre unsafe before the latest manoeuvre time, no safe answer
     {Phase::avoiding, Phase::watching},          // control lost or reset
-    {Phase::braking, Phase::rejoining},          // nominal path clear for a while
+    {Phase::braking, Phase::rejoining},          // nominal path and turn back clear
     {Phase::braking, Phase::avoiding},           // a method has a safe answer
     {Phase::braking, Phase::given_up},           // blocked by static threats for too long
     {Phase::braking, Phase::watching},           // control lost or reset
