@@ -115,7 +115,7 @@ public:
     [[nodiscard]] bool has_tracks() noexcept
     {
         bool any = false;
-        static_cast<void>(tracks_.empty() || budget_.spend(units::kStopLook));
+        static_cast<void>(budget_.spend(units::kStopLook));
         for (const world::Threat& track : tracks_) {
             if (counts(track)) {
                 any = true;
@@ -317,7 +317,8 @@ private:
 Vec3 stoppable_command(const world::Situation& s, const Vec3& wanted, float fastest, WorkBudget& budget, bool evades,
                        Seconds ahead) noexcept
 {
-    if (s.limits.kind != vehicle::VehicleKind::multirotor || s.threats.data() == nullptr || !is_finite(wanted)) {
+    if (s.limits.kind != vehicle::VehicleKind::multirotor || s.threats.data() == nullptr || !is_finite(wanted) ||
+        world::of_kind(s.threats, world::ThreatKind::track).empty()) {
         return wanted;
     }
     CommonStop stop(s, wanted, fastest, evades, ahead, budget);

@@ -44,7 +44,9 @@ void Endpoint::on_point(const Context& c) noexcept
     }
     follow_scan(m, c.now);
     if (distance > m.max_distance) {
-        points_to_->add(m.max_distance < scan_max_range_ ? Ray::invalid : Ray::nothing, point / distance);
+        if (m.max_distance >= scan_max_range_) {
+            points_to_->add(Ray::nothing, point / distance);
+        }
     } else {
         points_to_->add(Ray::hit, point * (std::max(distance, m.min_distance) / distance));
     }
