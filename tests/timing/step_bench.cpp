@@ -115,7 +115,8 @@ private:
         const GlobalPosition global = to_global(where, {470000000, 80000000, 0}).value();
         AdsbVehicle m;
         m.ICAO_address = id;
-        m.lat = global.lat;
+        // Never the same place twice running: an aircraft that says it moves and does not is a repetition.
+        m.lat = global.lat + static_cast<std::int32_t>(ticks_ / 10 % 2);
         m.lon = global.lon;
         m.altitude = global.alt;
         m.flags = 1 | 2 | 4 | 8 | 128;
