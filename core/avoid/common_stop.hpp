@@ -14,11 +14,11 @@ namespace jink::avoid {
 /// reports rises and falls, and what is clear with it; a command that has been held back comes up again no faster than
 /// the vehicle can.
 ///
-/// The own vehicle flies a command for FlightRules::latency and `ahead`, and stops then. A track flies on for as long
-/// and stops then. Since its report, and until it stops, it may have changed its velocity by what the own vehicle could
-/// in that time; it flies no faster than the own cruise speed, or than it was reported to. Level and vertical
-/// deceleration by themselves, k_sigma of places and velocities and the own loop's lag included; the lag of a track's
-/// loop is left to the safety box.
+/// The own vehicle flies a command for `ahead` and FlightRules::latency, and stops then. A track flies on for the
+/// latency, or for `ahead` as well, and stops then: both have to be clear. In the age of its report and the latency it
+/// may have changed its velocity by what the own vehicle could in that time; it flies no faster than the own cruise
+/// speed, or than it was reported to. Level and vertical deceleration by themselves, k_sigma of places and velocities
+/// and the own loop's lag included; the lag of a track's loop is left to the safety box.
 ///
 /// Two vehicles that command no more than this never touch, as long as both are steered so, fly as the vehicle model
 /// says, and hear each other's reports: of their two newest commands the later one was found clear of all that the
