@@ -253,28 +253,24 @@ private:
         });
     }
 
-    /// Of a vehicle that moves: whether what is wanted comes less near to the tracks than a stop.
+    /// Of a vehicle that moves: whether what is wanted comes less near than a stop to each track that not even a stop
+    /// is clear of, and is clear of all others.
     [[nodiscard, gnu::cold, gnu::noinline]] bool evades(OwnStop& own) noexcept
     {
         if (!wanted_evades_ || s_.own.velocity.norm() <= 2.0F * kLeaving || !(away_.norm() > kTiny)) {
             return false;
         }
-        fly(Vec3::Zero(), own);
-        const float stop = least_margin(own, -world::kSeparationCap);
+        OwnStop stop;
+        fly(Vec3::Zero(), stop);
         fly(wanted_, own);
-        return least_margin(own, stop) > stop && !budget_.exhausted();
-    }
-
-    /// To all tracks; or no more than `enough`, once one is as near.
-    [[nodiscard]] float least_margin(const OwnStop& own, float enough) noexcept
-    {
-        float least = world::kSeparationCap;
-        for (const world::Threat& track : tracks_) {
-            if (counts(track) && least > enough) {
-                least = std::min(least, margin_to(track, own));
+        const bool better = std::ranges::all_of(tracks_, [&](const world::Threat& track) noexcept {
+            if (!counts(track)) {
+                return true;
             }
-        }
-        return least;
+            const float margin = margin_to(track, own);
+            return margin >= 0.0F || margin > margin_to(track, stop);
+        });
+        return better && !budget_.exhausted();
     }
 
     /// A stop; or slowly out of the reach of the tracks that not even a stop is clear of.

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Two nominal paths: which one counts, when control may be given back, and when it is taken so that all can stop.
+#include <algorithm>
+#include <array>
 #include <limits>
 
 #include "core/avoid/common_stop.hpp"
@@ -47,17 +49,20 @@ void StateMachine::choose_nominal(Tick& tick) noexcept
     }
 }
 
-/// Whether all vehicles that avoid each other can stop if this one flies its nominal path for `ahead` before it does:
-/// in this time nobody holds it back. What all can stop after is in `tick.out.velocity` then.
+/// Whether all vehicles that avoid each other can stop if this one flies its nominal path for `ahead` before it does,
+/// or for less: in this time nobody holds it back, and who flies past another one may be clear of it at the end alone.
+/// `tick.out` follows the nominal path.
 bool StateMachine::leaves_stop(Tick& tick, Seconds ahead) noexcept
 {
     follow_nominal(tick);
-    if (tick.out.velocity.squaredNorm() == 0.0F) {
+    const Vec3& wanted = tick.out.velocity;
+    if (wanted.squaredNorm() == 0.0F) {
         return true;  // nothing is won by taking control of a vehicle that stays
     }
-    const Vec3 wanted = tick.out.velocity;
-    tick.out.velocity = stoppable_command(tick.s, wanted, kAnySpeed, tick.budget, false, ahead);
-    tick.out.for_stop = tick.out.velocity != wanted;
+    constexpr std::array kShares{1.0F, 0.5F, 0.0F};
+    tick.out.for_stop = std::ranges::any_of(kShares, [&](float share) noexcept {
+        return stoppable_command(tick.s, wanted, kAnySpeed, tick.budget, false, share * ahead) != wanted;
+    });
     diagnostics_.for_stop += tick.out.for_stop ? 1U : 0U;
     return !tick.out.for_stop;
 }

@@ -319,7 +319,7 @@ void TrackTable::expire(TimePoint now) noexcept
             const Said said{e.track.id, e.said, e.track.stamp};
             if (!expired_.try_push_back(said)) {
                 expired_[next_expired_] = said;
-                next_expired_ = (next_expired_ + 1) % expired_.capacity();
+                next_expired_ = (next_expired_ + 1) % kMaxTracks;
             }
             entries_.swap_erase(i);
             ++diagnostics_.expired;

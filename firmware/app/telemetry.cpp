@@ -194,14 +194,15 @@ void Telemetry::report_alert(const avoid::Guidance& g, Outbox& outbox) noexcept
     }
 }
 
-/// That nothing is safe is CRITICAL once in a conflict; a fallback that keeps clear is a warning, once too. A conflict
-/// that comes and goes is one.
+/// That nothing is safe is CRITICAL once in a conflict; a fallback that keeps clear is a warning, and control for a
+/// common stop alone a notice, once too. A conflict that comes and goes is one.
 void Telemetry::report_braking(TimePoint now, const avoid::Guidance& g, Outbox& outbox) noexcept
 {
-    conflict_.last =
-        g.conflict || g.alert != world::Alert::none || g.state == avoid::State::braking ? now : conflict_.last;
+    conflict_.last = g.conflict || g.alert != world::Alert::none || g.state == avoid::State::braking || g.for_stop
+                         ? now
+                         : conflict_.last;
     if (now - conflict_.last > kConflictOver) {
-        conflict_.said_unsafe = conflict_.said_braking = false;
+        conflict_.said_unsafe = conflict_.said_braking = conflict_.said_for_stop = false;
         conflict_.said_by = 0;
         conflict_.said_alert = world::Alert::none;
     }
@@ -213,6 +214,10 @@ void Telemetry::report_braking(TimePoint now, const avoid::Guidance& g, Outbox& 
             conflict_.said_braking = true;
             outbox.say(link::Severity::warning, "jink: no way around, braking");
         }
+    }
+    if (g.for_stop && !g.conflict && !conflict_.said_for_stop) {
+        conflict_.said_for_stop = true;
+        outbox.say(link::Severity::notice, "jink: slows for a neighbour, so that all can stop");
     }
 }
 

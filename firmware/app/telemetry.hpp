@@ -92,6 +92,7 @@ private:
         TimePoint reported_at;
         bool said_unsafe = false;
         bool said_braking = false;
+        bool said_for_stop = false;
         std::uint8_t said_by = 0;  ///< method; 0: none
         world::Alert said_alert = world::Alert::none;
         TimePoint said_by_at;

@@ -320,8 +320,8 @@ TEST(Swarm, ThatTurnsBackTouchesNobody)
     }
 }
 
-/// Whatever the swarm: no contact.
-TEST(Swarm, ThatTurnsBackTouchesNobodyAtRandom)
+/// Whatever the swarm, there and back or with ways that merge: no contact.
+TEST(Swarm, TouchesNobodyAtRandom)
 {
     const std::size_t cases = geometry::oracle::case_count(40);
     for (std::size_t i = 0; i < cases; ++i) {
@@ -329,7 +329,7 @@ TEST(Swarm, ThatTurnsBackTouchesNobodyAtRandom)
         Random random(seed);
         SwarmSetup setup;
         setup.vehicles = 2 + static_cast<unsigned>(random.below(2));
-        setup.back = true;
+        setup.back = random.below(3) != 0;
         setup.cruise = double(random.uniform(6.0F, 15.0F));
         setup.delay = double(random.uniform(0.0F, 1.0F));
         setup.loss = double(random.uniform(0.0F, 0.6F));
@@ -339,7 +339,7 @@ TEST(Swarm, ThatTurnsBackTouchesNobodyAtRandom)
         setup.level = 5.0 * size;
         setup.vertical = 3.0 * size;
         setup.circle = double(random.uniform(12.0F, 50.0F));
-        setup.sector = random.below(2) == 0 ? 360.0 : double(random.uniform(60.0F, 300.0F));
+        setup.sector = random.below(2) == 0 ? 360.0 : double(random.uniform(40.0F, 300.0F));
         setup.tilt = random.below(3) == 0 ? double(random.uniform(0.0F, 90.0F)) : 0.0;
         setup.duration = 90.0;
         setup.parameters = {{"JNK_METHODS", double(1 + random.below(7))}};

@@ -208,6 +208,18 @@ TEST(TellingBraking, NothingSafeIsAnEmergencyWhileTheVehicleBrakes)
     EXPECT_GT(unsafe_before, 0);
 }
 
+TEST(TellingBraking, ControlForACommonStopAloneIsANoticeOnce)
+{
+    const auto t = teller();
+    t->fly(60);
+    t->put_ahead(10.0F, Vec3(5.0F, 0.0F, 0.0F));
+    t->traffic.back().source = world::TrackSource::datalink;
+    ASSERT_TRUE(t->until([](const StepReport& r) { return r.guidance.for_stop && !r.guidance.conflict; }, 400));
+    EXPECT_TRUE(t->said_as(Severity::notice, "jink: slows for a neighbour, so that all can stop"));
+    t->fly(50);
+    EXPECT_EQ(t->said("jink: slows"), 1);
+}
+
 TEST(TellingBraking, NothingSafeIsCriticalOnceWhenTheVehicleBrakes)
 {
     const auto t = teller();
