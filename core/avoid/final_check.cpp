@@ -19,20 +19,11 @@ constexpr std::size_t kTailPoints = std::min<std::size_t>(12, kMaxPathPoints / 4
 constexpr std::size_t kFlightPoints = kMaxPathPoints - kTailPoints;
 constexpr world::Separation kContact{-world::kSeparationCap, 0.0F, {}};
 
-/// Until the vehicle stands, level and vertically.
-Seconds time_to_stand(const Vec3& velocity, const vehicle::VehicleLimits& limits) noexcept
-{
-    vehicle::VehicleLimits vertical = limits;
-    vertical.max_acceleration = limits.max_vertical_acceleration;
-    return std::max(vehicle::stopping_time(velocity.norm(), limits),
-                    vehicle::stopping_time(std::abs(velocity.z()), vertical));
-}
-
 /// The flight after the manoeuvre's end: to a stand, or straight on for as long as a stop would take for a fixed wing.
 bool predict_tail(const world::Situation& s, const Settings& settings, WorkBudget& budget, Prediction& flight) noexcept
 {
     const bool stops = s.limits.kind == vehicle::VehicleKind::multirotor;
-    const Seconds span = time_to_stand(flight.velocity, s.limits);
+    const Seconds span = vehicle::stopping_time(flight.velocity, s.limits);
     const std::size_t chords = kMaxPathPoints - flight.path.points.size();
     const Seconds step = std::max(settings.prediction_step, span / static_cast<float>(chords - 1));
     if (!budget.spend(detail::prediction_units(span + step, step, units::kCommandStep))) {
@@ -104,7 +95,7 @@ world::Separation separation_of(const world::Situation& situation, world::Manoeu
 
 Seconds time_to_stop(const world::Situation& s, const Settings& settings) noexcept
 {
-    return vehicle::stopping_time(s.own.velocity.norm(), s.limits) + settings.reserve;
+    return vehicle::stopping_time(s.own.velocity, s.limits) + settings.reserve;
 }
 
 world::Separation check_manoeuvre(const world::Situation& situation, const world::Manoeuvre& manoeuvre,

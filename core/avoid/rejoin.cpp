@@ -223,8 +223,9 @@ bool StateMachine::is_bent_into_conflict(Tick& tick) const noexcept
     if (!tick.in_control || tick.removed == Vec3::Zero() || !(speed > 0.0F)) {
         return false;
     }
-    const float fastest = std::max(speed, tick.s.own.velocity.norm());
-    const Seconds ahead = vehicle::stopping_time(fastest, tick.s.limits) + settings_.reserve;
+    const Seconds ahead = std::max(vehicle::stopping_time(command, tick.s.limits),
+                                   vehicle::stopping_time(tick.s.own.velocity, tick.s.limits)) +
+                          settings_.reserve;
     const Vec3& at = tick.s.own.position;
     const world::Reference along({at, at + tick.s.rules.lookahead * command, speed});
     const world::Situation bent = world::with_reference(tick.s, along);

@@ -117,7 +117,9 @@ struct Settings {
     // Of `plan_budget` kept back for each method that is asked after another one [work units].
     std::uint32_t kept_for_next = 8000;
     std::uint32_t kept_for_reactive = 3000;  ///< where that decides anew at every update
-    WorkPerUpdate work;                      ///< what bounds a step's time on every target
+    /// And of what a method has, but half of it at most, for the check of its answer; none where it decides anew.
+    std::uint32_t kept_for_check = 2500;
+    WorkPerUpdate work;  ///< what bounds a step's time on every target
 };
 /// Whether every setting lies within its range. O(1).
 [[nodiscard]] bool is_valid(const Settings& settings) noexcept;

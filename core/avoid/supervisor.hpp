@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <tuple>
 
@@ -104,8 +105,16 @@ private:
                        WorkBudget& budget, Diagnostics& diagnostics, Answer& out) noexcept
     {
         ++diagnostics.plans;
-        out.status = method.plan(situation, budget, out.manoeuvre);
+        // What is found with the last units can still be checked.
+        const std::uint32_t kept_for_check =
+            Method::kTraits.reactive ? 0 : std::min(settings.kept_for_check, budget.left() / 2);
+        WorkBudget planning = budget.part(budget.left() - kept_for_check);
+        out.status = method.plan(situation, planning, out.manoeuvre);
+        budget.charge(planning);
         if (out.status != world::PlanStatus::found) {
+            if (planning.exhausted()) {
+                budget.exhaust();
+            }
             return false;
         }
         out.manoeuvre.by = Method::kTraits.id;

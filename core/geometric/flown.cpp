@@ -88,7 +88,7 @@ void Flown::brake(WorkBudget& budget) noexcept
     Vec3 position = flight_.position(last);
     Vec3 velocity = last > 0 ? flight_.velocity(last - 1) : start_velocity_;
     const Seconds start = flight_.t[last];
-    const Seconds span = std::max(vehicle::stopping_time(velocity.norm(), limits_), kFlightStep);
+    const Seconds span = std::max(vehicle::stopping_time(velocity, limits_), kFlightStep);
     const path::detail::Steps steps(span, span / static_cast<float>(kTailPoints - 1), kTailPoints - 1);
     assert(flight_.points + steps.count <= kMaxPathPoints);  // the flight's own step leaves space for them
     Seconds from = 0.0F;

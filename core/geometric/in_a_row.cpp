@@ -40,6 +40,7 @@ struct Meeting {
     float radius = 0.0F;
     float rate = 0.0F;
     Seconds when = 0.0F;
+    float half_height = 0.0F;
 
     [[nodiscard]] float radius_at(Seconds t) const noexcept { return radius + t * rate; }
 };
@@ -55,7 +56,7 @@ bool first_met(const Problem& problem, const geometry::Motion& own, const Vec3& 
         const auto touch = geometry::contact_interval(box, own, motion, radius + rate * horizon, horizon);
         if (touch && (!met || touch->first < out.when)) {
             met = true;
-            out = {index, motion, radius, rate, touch->first};
+            out = {index, motion, radius, rate, touch->first, box.z() - half.z()};
         }
     };
     const std::span tracks = world::of_kind(problem.threats, world::ThreatKind::track);
@@ -92,6 +93,7 @@ bool second_part(const Problem& problem, const Beginning& first, const vehicle::
     out.start_velocity = vehicle::clamped_velocity(along, problem.speed, limits);
     out.preferred_side = Vec3::Zero();
     out.main_shape = nullptr;
+    out.main_half_height = 0.0F;
     // Twice: where it ends on the leg depends on what is met, and that on the way there.
     float back = top;
     for (int look = 0; look < 2; ++look) {
@@ -120,6 +122,7 @@ bool second_part(const Problem& problem, const Beginning& first, const vehicle::
         out.distance = when * speed;
         out.main = met.threat;
         out.main_radius = met.radius_at(when);
+        out.main_half_height = met.half_height;
         out.main_centre_offset =
             met.motion.position + when * met.motion.velocity - (out.frame.origin + when * velocity);
         // So near to the main threat the next one often is nearer than the 2.5 R; whether a curve clears it is checked.

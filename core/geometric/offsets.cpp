@@ -47,7 +47,8 @@ float main_extent(const Problem& problem, const Vec3& direction) noexcept
         return (geometry::support(*problem.main_shape, direction) - collision_point).dot(direction) +
                problem.main_clearance;
     }
-    return problem.main_centre_offset.dot(direction) + problem.main_radius;
+    return problem.main_centre_offset.dot(direction) + problem.main_radius +
+           problem.main_half_height * std::abs(direction.z());
 }
 
 }  // namespace

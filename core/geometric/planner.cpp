@@ -54,9 +54,10 @@ Problem problem_of(const Situation& situation, const world::Way& way, const worl
     problem.main_centre_offset = conflict.threat_at_closest - conflict.own_at_closest;
     if (conflict.threat.kind == world::ThreatKind::track) {
         problem.main = conflict.threat.index;
+        problem.main_half_height = main.half_height;
     } else if (conflict.threat.kind == world::ThreatKind::obstacle) {
         problem.main_shape = main.solid->kind == geometry::ShapeKind::sphere ? nullptr : main.solid;
-        problem.main_clearance = world::own_uncertainty(situation);
+        problem.main_clearance = world::own_uncertainty(situation) + main.slack;
     } else {
         problem.main_radius += keeps_soft_margins ? main.cylinder->margin : 0.0F;
         // A body that is large beside the distance to it is passed by the curves that are as long as that allows.

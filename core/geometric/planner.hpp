@@ -170,12 +170,13 @@ struct Problem {
     Vec3 main_centre_offset = Vec3::Zero();  ///< main threat's centre at the collision time minus the collision point
                                              ///< [m]; clearing offsets account for it
     const geometry::Shape* main_shape =
-        nullptr;                  ///< of a main threat that is an obstacle; null: a sphere of main_radius
-    float main_clearance = 0.0F;  ///< own position uncertainty, kept from main_shape [m]
-    float span_from = 0.0F;       ///< clearing offsets: where they begin and end in the span from smallest to largest,
-    float span_to = 1.0F;         ///< beyond 1 further out; with span_from > 0 the first one lies past it
-    float apex_share = 1.0F;      ///< the apex of a curve lies so many D from the start; 1: at the collision point
-    bool ends_at_top = false;     ///< curves end there, beside the main threat and along the leg
+        nullptr;                    ///< of a main threat that is an obstacle; null: a sphere of main_radius
+    float main_clearance = 0.0F;    ///< uncertainty of the own position and of main_shape's, kept from it [m]
+    float main_half_height = 0.0F;  ///< of a main threat that is an upright capsule (Threat::half_height) [m]
+    float span_from = 0.0F;    ///< clearing offsets: where they begin and end in the span from smallest to largest,
+    float span_to = 1.0F;      ///< beyond 1 further out; with span_from > 0 the first one lies past it
+    float apex_share = 1.0F;   ///< the apex of a curve lies so many D from the start; 1: at the collision point
+    bool ends_at_top = false;  ///< curves end there, beside the main threat and along the leg
     /// Without a route: so far along x the leg goes on, >= 0; manoeuvres of two parts end before it does [m].
     float straight = std::numeric_limits<float>::infinity();
     Seconds lead = 0.0F;    ///< the start of `frame` is reached so long after time 0 of the threats, >= 0 [s]

@@ -48,9 +48,10 @@ bool has_valid_scales(const Problem& p) noexcept
 {
     return is_valid(p.frame) && is_valid(p.ahead) && world::is_valid(p.rules) && is_positive(p.distance) &&
            is_positive(p.main_radius) && is_positive(p.speed) && is_not_negative(p.main_clearance) &&
-           is_not_negative(p.body_radius) && is_not_negative(p.span_from) && is_not_negative(p.span_to) &&
-           is_positive(p.apex_share) && is_not_negative(p.lead) && is_not_negative(p.begins) && p.straight >= 0.0F &&
-           is_finite(p.start_velocity) && is_finite(p.preferred_side) && is_finite(p.main_centre_offset);
+           is_not_negative(p.main_half_height) && is_not_negative(p.body_radius) && is_not_negative(p.span_from) &&
+           is_not_negative(p.span_to) && is_positive(p.apex_share) && is_not_negative(p.lead) &&
+           is_not_negative(p.begins) && p.straight >= 0.0F && is_finite(p.start_velocity) &&
+           is_finite(p.preferred_side) && is_finite(p.main_centre_offset);
 }
 
 }  // namespace

@@ -114,12 +114,33 @@ bool cap_speed(LimitSet& set, float cap) noexcept
     if (cap >= radius) {
         return true;
     }
-    // What is left of the speed after a period of braking, and a little, so that the two spheres have more than a
-    // point.
+    // What is left of the speed after a period of braking, as far as the least speed and the climb leave that, and a
+    // little, so that the spheres and half-spaces have more than a point.
     constexpr float kBrake = 0.99F;
-    const float least = std::max(set.reference.norm() - kBrake * set.spheres[1].radius, 0.0F);
+    const float speed = set.reference.norm();
+    float share = speed > 0.0F ? std::max(1.0F - kBrake * set.spheres[1].radius / speed, 0.0F) : 0.0F;
+    for (const HalfSpace& plane : set.half_spaces()) {
+        if (plane.offset > 0.0F) {
+            const float full = plane.offset / plane.normal.dot(set.reference);  // the reference keeps to the plane
+            share = std::max(share, std::min(full + (1.0F - kBrake) * (1.0F - full), 1.0F));
+        }
+    }
+    const float least = share * speed;
     radius = std::min(radius, std::max(cap, least));
     return cap >= least;
+}
+
+Seconds braking_time(const MotionLimits& limits) noexcept
+{
+    const Seconds across = limits.max_speed / limits.acceleration;
+    const auto upright = [&](float rate, float acceleration) noexcept {
+        const float speed = rate > 0.0F ? std::min(rate, limits.max_speed) : limits.max_speed;
+        return speed / acceleration;
+    };
+    const bool apart = limits.climb_acceleration > 0.0F && limits.sink_acceleration > 0.0F;
+    return !apart ? across
+                  : std::max({across, upright(limits.climb_rate, limits.sink_acceleration),
+                              upright(limits.sink_rate, limits.climb_acceleration)});
 }
 
 Unsafe check(const SafetyQuestion& q) noexcept
@@ -145,7 +166,7 @@ Unsafe check(const SafetyQuestion& q) noexcept
     if (stretch < kMinStretch || stretch > kMaxStretch) {
         return Unsafe::stretch;
     }
-    const float brakes = limits.max_speed / limits.acceleration;
+    const float brakes = braking_time(limits);
     const float delayed = kEulersNumber * q.delay;
     constexpr float kRounding = 1.0F + 1e-5F;  // defaults are just what is asked for
     if (q.obstacle_horizon * kRounding < brakes) {

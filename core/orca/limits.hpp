@@ -60,6 +60,9 @@ struct Reference {
 [[nodiscard]] LimitSet limit_set(const MotionLimits& limits, const Vec3& reference) noexcept;
 inline constexpr float kHover = 0.2F;  ///< [m/s]
 
+/// From the greatest speed to a stand, across, up or down [s].
+[[nodiscard]] Seconds braking_time(const MotionLimits& limits) noexcept;
+
 /// Brings the speed sphere down to `cap` [m/s], or as far as one period's acceleration lets it. False where that is not
 /// all the way. A least speed stays: it is a limit of flight.
 [[nodiscard]] bool cap_speed(LimitSet& set, float cap) noexcept;

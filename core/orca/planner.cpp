@@ -187,7 +187,7 @@ FilterSettings Planner::filter_settings(const world::Situation& s, Seconds tick)
     out.tick = tick;
     out.delay = s.rules.latency + limits.velocity_lag + CommandFilter(settings_.smoothing).delay(tick);
     const Seconds delayed = kDelayMargin * out.delay;
-    const Seconds brakes = motion.max_speed / motion.acceleration;
+    const Seconds brakes = braking_time(motion);
     const Cylinder own = cylinder_of(limits.half_extents, 0.0F);
     out.half_width = own.half_width;
     out.half_height = own.half_height;

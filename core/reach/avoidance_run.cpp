@@ -212,7 +212,7 @@ bool Planner::can_stop(const Situation& situation, const path::TimedPath& path, 
     vehicle::VehicleState at = situation.own;
     at.position = path.points.back().position;
     at.velocity = path.points.back().velocity;
-    const Seconds step = vehicle::stopping_time(at.velocity.norm(), situation.limits) / static_cast<float>(kStopPieces);
+    const Seconds step = vehicle::stopping_time(at.velocity, situation.limits) / static_cast<float>(kStopPieces);
     const float bulge = 0.125F * situation.limits.max_acceleration * step * step;
     Seconds t = path.duration() - start.lead;
     for (int i = 0; i < kStopPieces; ++i) {

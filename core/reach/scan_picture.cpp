@@ -192,6 +192,7 @@ void ScanPicture::end() noexcept
 {
     if (counts_) {
         seen_ = 1 - seen_;
+        ++ended_;
         known_ = true;
         judge();
     }
@@ -242,10 +243,17 @@ RateStatus ScanPicture::rate(const world::Situation& situation, const Placed& pl
         return is_known() && blocks_unseen_ ? RateStatus::blind : RateStatus::nothing_known;
     }
     CellBits near{};
-    if (!budget.spend(static_cast<std::uint32_t>(units::kReachScanCell * (1 + grid_.cells() / kFindShare))) ||
-        !budget.spend(static_cast<std::uint32_t>(units::kReachScanCell * (sets.cells() + find_near(placed, near))))) {
-        return RateStatus::budget_spent;
-    }
+    std::uint32_t seen = 0;
+    do {
+        // Where the budget lasts until the next slice, a scan may end meanwhile.
+        seen = ended_;
+        near = {};
+        if (!budget.spend(static_cast<std::uint32_t>(units::kReachScanCell * (1 + grid_.cells() / kFindShare))) ||
+            !budget.spend(
+                static_cast<std::uint32_t>(units::kReachScanCell * (sets.cells() + find_near(placed, near))))) {
+            return RateStatus::budget_spent;
+        }
+    } while (seen != ended_);
     look_from(placed, blocks);
     lay_over(placed, near, blocks);
     return RateStatus::rated;

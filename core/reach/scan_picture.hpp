@@ -85,7 +85,8 @@ private:
     bool blocks_unseen_ = true;
     bool counts_ = false;  ///< a usable scan has begun
     bool known_ = false;
-    std::size_t seen_ = 0;  ///< which of both scans is the picture
+    std::size_t seen_ = 0;     ///< which of both scans is the picture
+    std::uint32_t ended_ = 0;  ///< scans that ended as the picture
     std::array<LidarScan, 2> scans_;
     std::array<ScanStart, 2> start_;
     std::array<std::uint16_t, LidarScan::kDirections> fired_{};  ///< of the scan under way

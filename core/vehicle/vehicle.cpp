@@ -56,6 +56,13 @@ Seconds stopping_time(float speed, const VehicleLimits& limits) noexcept
     return rest > kStandstillSpeed ? ramp + limits.velocity_lag * natural_log(rest / kStandstillSpeed) : ramp;
 }
 
+Seconds stopping_time(const Vec3& velocity, const VehicleLimits& limits) noexcept
+{
+    VehicleLimits vertical = limits;
+    vertical.max_acceleration = limits.max_vertical_acceleration;
+    return std::max(stopping_time(velocity.norm(), limits), stopping_time(std::abs(velocity.z()), vertical));
+}
+
 void advance(VehicleState& state, const Vec3& command, const VehicleLimits& limits, Seconds dt) noexcept
 {
     detail::Fading fading(limits.velocity_lag);

@@ -71,6 +71,8 @@ inline constexpr float kStandstillSpeed = 0.05F;
 [[nodiscard]] float stopping_distance(float speed, const VehicleLimits& limits) noexcept;
 /// Time until the vehicle is slower than kStandstillSpeed on the command zero. O(1).
 [[nodiscard]] Seconds stopping_time(float speed, const VehicleLimits& limits) noexcept;
+/// From any velocity, level and vertically, each with its own deceleration. O(1).
+[[nodiscard]] Seconds stopping_time(const Vec3& velocity, const VehicleLimits& limits) noexcept;
 
 /// One step of the vehicle model used for prediction. Velocity follows `command` with the loop's lag (first order). Its
 /// change is bounded by the acceleration limits (horizontally as a vector, vertically by itself), and the command's

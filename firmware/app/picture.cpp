@@ -98,11 +98,25 @@ void Picture::take_ranges(const link::Inbox& inbox, const OwnState& own, const C
         const Vec3 place = seen_from(reading.stamp);
         if (!sees_ground(reading)) {
             counts_.readings_refused += place_reading(reading, place, c, obstacles_) ? 0U : 1U;
-        } else if (reading.range == link::RangeScan::kNothing) {
-            ground_.reset();
         } else {
-            ground_ = {place.z() + reading.direction.z() * reading.range, reading.stamp + c.scan_keep};
+            take_ground(reading, place, c);
         }
+    }
+}
+
+/// Of several sensors the highest ground counts, while it is new; one that sees nothing knows nothing of what is beyond
+/// its reach.
+void Picture::take_ground(const link::RangeReading& reading, const Vec3& place, const Configuration& c) noexcept
+{
+    const bool sees = reading.range != link::RangeScan::kNothing;
+    const float height = place.z() + reading.direction.z() * (sees ? reading.range : reading.max_range);
+    const bool other = ground_ && ground_->sensor != reading.sensor && reading.stamp <= ground_->expires;
+    if (other && (sees ? height < ground_->height : height >= ground_->height)) {
+        return;
+    }
+    ground_.reset();
+    if (sees) {
+        ground_ = {height, reading.stamp + c.scan_keep, reading.sensor};
     }
 }
 

@@ -86,7 +86,10 @@ private:
     struct Ground {
         float height = 0.0F;  ///< [m]
         TimePoint expires;
+        std::uint8_t sensor = 0;
     };
+
+    void take_ground(const link::RangeReading& reading, const Vec3& place, const Configuration& c) noexcept;
 
     Diagnostics& counts_;
     world::TrackTable tracks_;

@@ -316,31 +316,11 @@ void Endpoint::place(const Context& c, RangeReading& reading, const Vec3& body, 
     }
     // Two nodes may use the same sensor id.
     const std::uint32_t key = static_cast<std::uint32_t>(c.transfer.source) << 24U | beam;
-    reading.sensor = beam_of(key, c.now);
+    reading.sensor = static_cast<std::uint8_t>(kFirstBeam + beams_.of(key, c.now));
     reading.direction = mavlink::swap_ned_enu(turn(attitude_, body));
     if (!c.inbox.readings.try_push_back(reading)) {
         ++diagnostics_.inbox_full;
     }
-}
-
-std::uint8_t Endpoint::beam_of(std::uint32_t key, TimePoint now) noexcept
-{
-    Beam* chosen = nullptr;
-    Beam* oldest = &beams_.front();
-    for (Beam& beam : beams_) {
-        if (beam.used && beam.key == key) {
-            chosen = &beam;
-            break;
-        }
-        const bool better = !beam.used ? oldest->used : oldest->used && beam.heard < oldest->heard;
-        oldest = better ? &beam : oldest;
-    }
-    if (chosen == nullptr) {
-        chosen = oldest;
-        beams_evicted_ += chosen->used ? 1U : 0U;
-    }
-    *chosen = {true, key, now};
-    return static_cast<std::uint8_t>(kFirstBeam + (chosen - beams_.data()));
 }
 
 }  // namespace jink::link::dronecan

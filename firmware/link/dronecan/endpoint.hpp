@@ -5,6 +5,7 @@
 
 #include "firmware/link/dronecan/node.hpp"
 #include "firmware/link/mavlink/geodesy.hpp"
+#include "firmware/link/sensor_slots.hpp"
 
 // DroneCAN side of an inbox: converts messages of sensors and traffic receivers on the bus to the types of messages.hpp
 // (ENU, SI). docs/guides/dronecan.md is the reference for users. Handling of each message:
@@ -28,11 +29,11 @@
 
 namespace jink::link::dronecan {
 
-/// Directions of sensors that are kept apart: a ring of 24 and some fixed ones. When full, the direction that has been
-/// silent for longest is replaced, and `beams_evicted` counts it. 8 bytes each and a stamp.
+/// Directions of sensors that are kept apart: a ring of 24 and some fixed ones. `beams_evicted` counts those given
+/// away.
 inline constexpr std::size_t kBeams = 48;
-/// RangeReading::sensor of the first beam: apart from the ids that MAVLink's sensors use in practice.
-inline constexpr std::uint8_t kFirstBeam = 128;
+/// RangeReading::sensor of the first beam: those before it are MAVLink's.
+inline constexpr std::uint8_t kFirstBeam = kMavlinkSensors;
 static_assert(kBeams >= 24 && kFirstBeam + kBeams <= 256);
 
 struct EndpointOptions {
@@ -83,7 +84,7 @@ public:
     [[nodiscard]] const Node& node() const noexcept { return node_; }
     [[nodiscard]] bool has_origin() const noexcept { return options_.has_origin; }
     [[nodiscard]] const LinkDiagnostics& diagnostics() const noexcept { return diagnostics_; }
-    [[nodiscard]] std::uint32_t beams_evicted() const noexcept { return beams_evicted_; }
+    [[nodiscard]] std::uint32_t beams_evicted() const noexcept { return beams_.evicted(); }
 
 private:
     struct Context {
@@ -96,12 +97,6 @@ private:
         std::uint8_t node = kAnonymous;
         TimePoint heard;
     };
-    /// One direction of one sensor.
-    struct Beam {
-        bool used = false;
-        std::uint32_t key = 0;
-        TimePoint heard;
-    };
 
     void on_fix(const Context& c) noexcept;
     void on_attitude(const Context& c) noexcept;
@@ -112,7 +107,6 @@ private:
     /// False, and counted, while another node is followed. `changed`: the followed node has changed.
     [[nodiscard]] bool follow(Source& source, const Context& c, bool& changed) noexcept;
     [[nodiscard]] bool stamp_of(std::uint64_t wire, const Context& c, TimePoint& stamp) noexcept;
-    [[nodiscard]] std::uint8_t beam_of(std::uint32_t key, TimePoint now) noexcept;
 
     Node node_;
     EndpointOptions options_;
@@ -122,8 +116,7 @@ private:
     bool has_attitude_ = false;
     TimePoint attitude_heard_;
     std::array<float, 4> attitude_{};  ///< x, y, z, w
-    std::array<Beam, kBeams> beams_{};
-    std::uint32_t beams_evicted_ = 0;
+    SensorSlots<kBeams> beams_;
     LinkDiagnostics diagnostics_;
 };
 

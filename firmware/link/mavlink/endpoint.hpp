@@ -13,6 +13,7 @@
 #include "firmware/link/mavlink/plane_steering.hpp"
 #include "firmware/link/mavlink/stream_requests.hpp"
 #include "firmware/link/mavlink/transmit_buffer.hpp"
+#include "firmware/link/sensor_slots.hpp"
 #include "firmware/link/track_ids.hpp"
 
 // MAVLink side of link::Link: NED/FRD and degE7 in, ENU and metres out, and back. docs/guides/messages.md is the
@@ -339,6 +340,7 @@ private:
     std::uint16_t reached_sequence_ = 0;
     TimePoint reached_;
 
+    SensorSlots<kMavlinkSensors> range_sensors_;
     /// State of a scan of single points.
     bool is_scan_open_ = false;
     std::uint8_t scan_sensor_ = 0;

@@ -152,7 +152,10 @@ void Endpoint::on_distance_sensor(const Context& c) noexcept
     }
     RangeReading reading;
     reading.stamp = c.now;
-    reading.sensor = m.id;
+    // Two components may use the same id, and one of them for sensors that look different ways.
+    const std::uint32_t looks = level ? 0 : m.orientation;
+    reading.sensor =
+        range_sensors_.of(std::uint32_t{c.frame.header.component_id} << 16U | std::uint32_t{m.id} << 8U | looks, c.now);
     reading.max_range = static_cast<float>(m.max_distance) * kCentimetre;
     reading.range = m.current_distance > m.max_distance || (proximity && m.current_distance == m.max_distance)
                         ? RangeScan::kNothing

@@ -87,6 +87,38 @@ TEST_P(StepRangeAge, TheGroundUnderAVehicleThatSinks)
     EXPECT_NEAR(shown.view.floor, 30.0F + 2.0F * latency() - 12.0F + 3.0F, 1e-3F);
 }
 
+/// A LiDAR of 40 m and a sonar of 5 m look down: the ground that one sees is not what the other one does not see.
+TEST(StepGround, OfTwoSensorsThatLookDownTheHighestCounts)
+{
+    ShownWorld shown;
+    StepBench bench{{Param::floor, 3.0F}, {Param::bounds, 1.0F}};
+    bench.coprocessor.use_clouds(shown);
+    bench.hear_autopilot();
+    const auto floor_after = [&](std::uint8_t sensor, float range, float reach) {
+        link::OwnStateReport& own = bench.hear_own(0.0F);
+        own.state.position = Vec3(0.0F, 0.0F, 30.0F);
+        own.state.velocity = Vec3::Zero();
+        link::RangeReading down;
+        down.stamp = bench.next();
+        down.direction = -Vec3::UnitZ();
+        down.range = range;
+        down.max_range = reach;
+        down.sensor = sensor;
+        bench.wire.in.readings.unchecked_push_back(down);
+        bench.step();
+        return shown.view.floor;
+    };
+    constexpr float kNothing = link::RangeScan::kNothing;
+    EXPECT_NEAR(floor_after(0, 12.0F, 40.0F), 21.0F, 0.01F);
+    EXPECT_NEAR(floor_after(1, kNothing, 5.0F), 21.0F, 0.01F) << "beyond its reach";
+    EXPECT_NEAR(floor_after(1, 4.0F, 5.0F), 29.0F, 0.01F) << "a tree";
+    EXPECT_NEAR(floor_after(0, 12.0F, 40.0F), 29.0F, 0.01F);
+    EXPECT_NEAR(floor_after(0, kNothing, 40.0F), 3.0F, 0.01F) << "it would have seen that";
+    EXPECT_NEAR(floor_after(0, 12.0F, 40.0F), 21.0F, 0.01F);
+    EXPECT_NEAR(floor_after(0, 14.0F, 40.0F), 19.0F, 0.01F) << "its own newest counts";
+    EXPECT_NEAR(floor_after(0, kNothing, 40.0F), 3.0F, 0.01F);
+}
+
 INSTANTIATE_TEST_SUITE_P(Of, StepRangeAge,
                          testing::Values(std::pair{0.0F, 0.0F}, std::pair{0.0F, 0.1F}, std::pair{0.1F, 0.0F},
                                          std::pair{0.25F, 0.04F}, std::pair{0.4F, 0.1F}),

@@ -336,7 +336,38 @@ TEST_F(MavlinkEndpointSensors, ReadingsLookWhereTheirOrientationSays)
         expect_near(inbox->readings[0].direction, direction, 1e-5F);
         EXPECT_FLOAT_EQ(inbox->readings[0].range, 12.34F);
         EXPECT_FLOAT_EQ(inbox->readings[0].max_range, 30.0F);
-        EXPECT_EQ(inbox->readings[0].sensor, 3);
+    }
+}
+
+/// By component, id, and level, up or down: 32 of them; a level sensor that turns is the same one.
+TEST_F(MavlinkEndpointSensors, ReadingsOfSensorsThatAreNotTheSameAreToldApart)
+{
+    attitude(0.0F);
+    const auto number = [&](std::uint8_t component, std::uint8_t id, std::uint8_t orientation) {
+        wait(0.01F);
+        attitude(0.0F);
+        clear();
+        DistanceSensor m = reading();
+        m.id = id;
+        m.orientation = orientation;
+        from(kSystem, component, m);
+        return inbox->readings.size() == 1 ? int{inbox->readings[0].sensor} : -1;
+    };
+    std::set<int> numbers;
+    for (const std::uint8_t component : {158, 159}) {
+        for (const std::uint8_t id : {0, 1, 255}) {
+            for (const std::uint8_t orientation : {0, 24, 25}) {
+                EXPECT_TRUE(numbers.insert(number(component, id, orientation)).second);
+            }
+            EXPECT_TRUE(numbers.contains(number(component, id, 6)));
+        }
+    }
+    const int first = number(158, 0, 0);
+    for (int id = 2; id < 100; ++id) {
+        const int given = number(160, static_cast<std::uint8_t>(id), 0);
+        EXPECT_TRUE(given >= 0 && given < 32) << given;
+        EXPECT_NE(given, first);
+        EXPECT_EQ(number(158, 0, 0), first) << "heard all the time";
     }
 }
 

@@ -130,7 +130,7 @@ private:
         }
         state.velocity = out.back().velocity;
         const float end = out.back().time;
-        const float span = std::max(vehicle::stopping_time(state.velocity.norm(), limits_), 0.2F);
+        const float span = std::max(vehicle::stopping_time(state.velocity, limits_), 0.2F);
         for (int k = 1; k <= 11 && out.size() < kMaxPathPoints; ++k) {
             const float step = span / 11.0F;
             const float from = k == 1 ? 0.0F : static_cast<float>(k - 1) * step;

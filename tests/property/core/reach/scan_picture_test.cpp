@@ -28,9 +28,13 @@ struct GridAlone {
 
     bool rate(ScanPicture& picture, bool blocks_unseen)
     {
+        WorkBudget budget(100'000);
+        return rate(picture, blocks_unseen, budget);
+    }
+    bool rate(ScanPicture& picture, bool blocks_unseen, WorkBudget& budget)
+    {
         picture.block_unseen(blocks_unseen);
         std::fill(blocks.begin(), blocks.end(), kFree);
-        WorkBudget budget(100'000);
         const vehicle::VehicleState own;
         const vehicle::VehicleLimits limits;
         const vehicle::Airframe airframe;
@@ -89,6 +93,43 @@ TEST(ScanPictures, WhatIsHitIsBlockedAndWhatLiesBehindIsNotSeen)
     ASSERT_TRUE(grid.rate(picture, false));
     for (std::uint8_t layer = 0; layer < 10; ++layer) {
         EXPECT_EQ(grid.level(layer, 3, 2), layer == 4 ? kBlocked : kFree) << int{layer};
+    }
+}
+
+/// A rating that waits for its next slice while a scan ends rates by that scan.
+TEST(ScanPictures, AScanThatEndsDuringARatingCounts)
+{
+    struct Lidar {
+        ScanPicture picture;
+        WorkSlice* slice = nullptr;
+        int waits = 0;
+        int ends_at = 0;
+    };
+    for (int ends_at = 1; ends_at <= 3; ++ends_at) {
+        GridAlone grid;
+        Lidar lidar;
+        lidar.ends_at = ends_at;
+        ASSERT_TRUE(lidar.picture.configure(grid.set.grid));
+        ASSERT_TRUE(lidar.picture.begin(straight_ahead()));
+        look_around(lidar.picture);
+        WorkSlice slice(
+            [](void* context) noexcept {
+                Lidar& of = *static_cast<Lidar*>(context);
+                if (++of.waits == of.ends_at) {
+                    static_cast<void>(of.picture.begin(straight_ahead()));
+                    look_around(of.picture, {Vec3(4.5F, 0.0F, 0.0F)});
+                }
+                of.slice->begin(2000);
+            },
+            &lidar);
+        lidar.slice = &slice;
+        WorkBudget budget(1'000'000, slice);
+        ASSERT_TRUE(grid.rate(lidar.picture, false, budget));
+        const std::vector<Level> rated = grid.blocks;
+        const bool ended = lidar.waits >= ends_at;
+        ASSERT_TRUE(ended || ends_at > 1);
+        ASSERT_TRUE(grid.rate(lidar.picture, false));
+        EXPECT_EQ(rated, grid.blocks) << ends_at;
     }
 }
 

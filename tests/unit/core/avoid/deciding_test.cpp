@@ -141,6 +141,7 @@ TEST(PlanBudget, IsTheSliceAndWhatIsNotKeptForAFallback)
     Settings settings = quick();
     settings.work = {6000, 3000};
     settings.kept_for_next = 0;
+    settings.kept_for_check = 0;
     std::vector<std::uint32_t> had;
     FakeMethod method{[&](const Situation&, WorkBudget& budget, Manoeuvre&) {
         had.push_back(budget.left());

@@ -283,6 +283,7 @@ TEST(MethodOrders, WhatIsKeptForTheNextMethodIsLeftToIt)
     Settings settings = quick();
     settings.plan_budget = 5000;
     settings.kept_for_next = 2000;
+    settings.kept_for_check = 0;
     std::uint32_t first_had = 0;
     std::uint32_t second_had = 0;
     FakeMethod first{[&](const Situation&, WorkBudget& budget, Manoeuvre&) {
@@ -315,6 +316,7 @@ TEST(MethodOrders, EachKindOfMethodHasItsOwnShare)
     settings.plan_budget = 10'000;
     settings.kept_for_next = 4000;
     settings.kept_for_reactive = 1500;
+    settings.kept_for_check = 500;
     std::vector<std::uint32_t> had;
     const auto spend_all = [&](const Situation&, WorkBudget& budget, Manoeuvre&) {
         had.push_back(budget.left());
@@ -327,7 +329,7 @@ TEST(MethodOrders, EachKindOfMethodHasItsOwnShare)
     ReactiveFake third{{spend_all}};
     Supervisor supervisor(settings, first, second, third);
     static_cast<void>(f.update(supervisor, true));
-    EXPECT_EQ(had, (std::vector<std::uint32_t>{4500, 4000, 1500}));
+    EXPECT_EQ(had, (std::vector<std::uint32_t>{4000, 3500, 1500}));
 }
 
 /// Keeps a clearance buffer by itself.
@@ -364,7 +366,9 @@ TEST(MethodOrders, AMethodThatSpendsTheBudgetLeavesNothingToTrust)
         out = detour(s, kLeft, 6.0F, 60.0F);
         return PlanStatus::found;
     }};
-    Supervisor supervisor(quick(), method);
+    Settings settings = quick();
+    settings.kept_for_check = 0;
+    Supervisor supervisor(settings, method);
     const Guidance g = f.update(supervisor, true);
     EXPECT_NE(g.state, State::avoiding) << "what could not be checked is not flown";
     EXPECT_EQ(supervisor.diagnostics().budget_spent, 1U);

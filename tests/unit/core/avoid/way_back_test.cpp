@@ -221,5 +221,49 @@ TEST(WayBack, TheFinalCheckFollowsAStopToItsEnd)
     }
 }
 
+/// Straight down at a roof with weak vertical acceleration, and no method that answers: braked for in time.
+TEST(Braking, ARoofBelowIsBrakedForWithTheVerticalAcceleration)
+{
+    for (const float acceleration : {0.5F, 1.0F, 3.0F}) {
+        for (const float speed : {3.0F, 5.0F}) {
+            for (const float across : {0.0F, 2.0F}) {
+                Flight f;
+                f.scene.limits.max_vertical_acceleration = acceleration;
+                f.scene.limits.max_descent = speed;
+                const Vec3 down(across, 0, -speed);
+                f.scene.leg(Vec3(0, 0, 60), Vec3(0, 0, 60) + 30.0F * down, down.norm());
+                f.scene.own.position = Vec3(0, 0, 60);
+                f.scene.own.velocity = down;
+                f.scene.obstacle(geometry::make_box(Vec3(0, 0, 5), Vec3(50, 50, 5)));
+                FakeMethod method = never();
+                Supervisor supervisor(Settings{}, method);
+                bool control = false;
+                double least = 1e9;
+                for (int step = 0; step < 400; ++step) {
+                    const Guidance g = f.update(supervisor, control);
+                    control = g.wants_control;
+                    f.pass(control ? g.velocity : down, kTick);
+                    least = std::min(least, gap_to(f.scene, f.scene.obstacles[0].shape));
+                }
+                EXPECT_GE(least, 0.0) << acceleration << " " << speed << " " << across;
+            }
+        }
+    }
+}
+
+/// A planner that needs all of its units still has its answer checked.
+TEST(Planning, AnAnswerFoundWithTheLastUnitsIsChecked)
+{
+    Flight f;
+    FakeMethod method{[](const Situation& s, WorkBudget& budget, Manoeuvre& out) {
+        static_cast<void>(budget.spend(budget.left()));
+        out = detour(s, kLeft, 6.0F, 60.0F);
+        return PlanStatus::found;
+    }};
+    Supervisor supervisor(Settings{}, method);
+    EXPECT_EQ(avoid_head_on(f, supervisor).state, State::avoiding);
+    EXPECT_EQ(supervisor.diagnostics().answers_rejected, 0U);
+}
+
 }  // namespace
 }  // namespace jink::avoid

@@ -46,6 +46,39 @@ TEST(Planner, UncertainTrackIsGivenMoreRoom)
     EXPECT_GE(world::least_separation(flight.situation(), flight.out.path, 100.0F, flight.budget).margin, 0.0F);
 }
 
+/// What is uncertain of a solid, or of a track's height, is passed by as much more, at the first attempt.
+TEST(Planner, UncertainSolidsAndHeightsArePassedCloseBy)
+{
+    const auto widest = [](Flight& flight) {
+        float widest = 0.0F;
+        EXPECT_EQ(flight.plan(), PlanStatus::found);
+        EXPECT_EQ(flight.planner.last().attempt, 0U);
+        for (const path::PathPoint& p : flight.out.path.points) {
+            widest = std::max(widest, Vec3(0.0F, p.position.y(), p.position.z() - 50.0F).norm());
+        }
+        return widest;
+    };
+    float sure = 0.0F;
+    for (const float uncertainty : {0.0F, 0.1F, 0.3F, 0.6F}) {
+        Flight flight;
+        flight.obstacles = {{1, geometry::make_box(Vec3(25.0F, 0.0F, 50.0F), Vec3(1.0F, 1.5F, 1.5F)), uncertainty}};
+        const float width = widest(flight);
+        sure = uncertainty == 0.0F ? width : sure;
+        EXPECT_LT(width, sure + 2.0F * uncertainty + 0.01F) << uncertainty;
+    }
+    for (const float half_height : {0.0F, 1.2F, 2.4F}) {
+        Flight flight;
+        flight.add(Vec3(25.0F, 0.0F, 50.0F), Vec3::Zero(), 1.0F);
+        flight.tracks[0].half_height = half_height;
+        // Over or under it alone.
+        flight.obstacles = {{1, geometry::make_box(Vec3(25.0F, 6.6F, 50.0F), Vec3(40.0F, 4.0F, 40.0F))},
+                            {2, geometry::make_box(Vec3(25.0F, -6.6F, 50.0F), Vec3(40.0F, 4.0F, 40.0F))}};
+        const float width = widest(flight);
+        sure = half_height == 0.0F ? width : sure;
+        EXPECT_LT(width, sure + 1.5F * half_height + 0.01F) << half_height;
+    }
+}
+
 TEST(Planner, TreeInTheWay)
 {
     Flight flight;

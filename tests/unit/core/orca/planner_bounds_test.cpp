@@ -173,5 +173,64 @@ TEST_F(OrcaInput, TheAnswerReplacesWhatWasInItsPlace)
     EXPECT_EQ(used.path.points.back().position, clean.path.points.back().position);
 }
 
+/// One neighbour too many caps the speed, but not below what the vehicle can fly next: a wing's least speed, the climb
+/// that it cannot leave at once.
+TEST_F(OrcaInput, ACapOfTheSpeedLeavesWhatCanBeFlown)
+{
+    const auto ring = [&](int n, float radius) {
+        scene.tracks.clear();
+        for (int i = 0; i < n; ++i) {
+            const float angle = 2.0F * kPi * static_cast<float>(i) / static_cast<float>(n);
+            const Vec3 at = scene.own.position + radius * Vec3(std::cos(angle), std::sin(angle), 0.0F);
+            world::Track& track = scene.track(at, scene.own.velocity);
+            track.id = static_cast<world::TrackId>(100 + i);
+            track.cooperative = true;
+        }
+    };
+    scene.own.velocity = Vec3(0, 0, 3);
+    towards(Vec3(0, 0, 1), 3.0F);
+    for (const int n : {16, 17, 24}) {
+        for (const float radius : {5.0F, 6.0F, 10.0F}) {
+            ring(n, radius);
+            EXPECT_GT(command().z(), 0.0F) << n << " " << radius;
+        }
+    }
+    scene.limits.kind = vehicle::VehicleKind::fixed_wing;
+    scene.limits.cruise_speed = 15.0F;
+    scene.limits.max_acceleration = 5.0F;
+    scene.own.velocity = Vec3(15, 0, 0);
+    towards(Vec3(1, 0, 0), 15.0F);
+    for (const int n : {16, 17, 24}) {
+        for (const float radius : {80.0F, 100.0F, 120.0F}) {
+            ring(n, radius);
+            EXPECT_GE(command().norm(), 0.9F * 15.0F - 1e-3F) << n << " " << radius;
+        }
+    }
+}
+
+/// Down at a floor with weak vertical acceleration: braking takes longer than level.
+TEST_F(OrcaInput, AFloorIsBrakedForWithTheVerticalAcceleration)
+{
+    constexpr Seconds kTick = 0.02F;
+    for (const float acceleration : {3.0F, 1.0F, 0.5F}) {
+        scene.limits.max_vertical_acceleration = acceleration;
+        scene.airspace.has_floor = true;
+        scene.airspace.floor = 4.5F;
+        scene.own.position = Vec3(0, 0, 40);
+        scene.own.velocity = Vec3(0, 0, -3);
+        scene.leg(Vec3(0, 0, 60), Vec3(0, 0, -100), 5.0F);
+        planner = Planner(settings);
+        float lowest = 1e9F;
+        for (int k = 0; k < 2000; ++k) {
+            static_cast<void>(plan());
+            vehicle::advance(scene.own, out.command, scene.limits, kTick);
+            step(kTick);
+            lowest = std::min(lowest, scene.own.position.z() - scene.limits.half_extents.z());
+        }
+        EXPECT_GE(lowest, scene.airspace.floor - 0.02F) << acceleration;
+        EXPECT_LT(lowest, scene.airspace.floor + 3.0F) << acceleration << ": it does come down";
+    }
+}
+
 }  // namespace
 }  // namespace jink::orca
