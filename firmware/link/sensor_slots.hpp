@@ -12,7 +12,7 @@ namespace jink::link {
 /// RangeReading::sensor of MAVLink's sensors is below this, that of DroneCAN's is not.
 inline constexpr std::size_t kMavlinkSensors = 32;
 
-/// Numbers for range sensors that are told apart by more than RangeReading::sensor holds: by who sends, its own id, and
+/// Numbers for range sensors that are kept apart by more than RangeReading::sensor holds: by who sends, its own id, and
 /// where it looks. When all `N` are taken, the one that has been silent for longest is given away, and `evicted` counts
 /// it. 8 bytes each and a stamp.
 template <std::size_t N>

@@ -340,7 +340,7 @@ TEST_F(MavlinkEndpointSensors, ReadingsLookWhereTheirOrientationSays)
 }
 
 /// By component, id, and level, up or down: 32 of them; a level sensor that turns is the same one.
-TEST_F(MavlinkEndpointSensors, ReadingsOfSensorsThatAreNotTheSameAreToldApart)
+TEST_F(MavlinkEndpointSensors, ReadingsOfSensorsThatAreNotTheSameAreKeptApart)
 {
     attitude(0.0F);
     const auto number = [&](std::uint8_t component, std::uint8_t id, std::uint8_t orientation) {
