@@ -109,6 +109,9 @@ TEST(ScanPictures, AScanThatEndsDuringARatingCounts)
         GridAlone grid;
         Lidar lidar;
         lidar.ends_at = ends_at;
+        grid.placed.origin = Vec3(0.3F, -0.2F, 0.1F);
+        grid.placed.cosine = std::cos(0.3F);
+        grid.placed.sine = std::sin(0.3F);
         ASSERT_TRUE(lidar.picture.configure(grid.set.grid));
         ASSERT_TRUE(lidar.picture.begin(straight_ahead()));
         look_around(lidar.picture);
@@ -116,8 +119,17 @@ TEST(ScanPictures, AScanThatEndsDuringARatingCounts)
             [](void* context) noexcept {
                 Lidar& of = *static_cast<Lidar*>(context);
                 if (++of.waits == of.ends_at) {
-                    static_cast<void>(of.picture.begin(straight_ahead()));
-                    look_around(of.picture, {Vec3(4.5F, 0.0F, 0.0F)});
+                    // Turned and thinner cells than the set's, which samples of those miss.
+                    Random random(7);
+                    std::vector<Vec3> hits;
+                    for (int i = 0; i < 60; ++i) {
+                        const float h = random.uniform(-0.6F, 0.6F);
+                        const float v = random.uniform(-0.4F, 0.4F);
+                        hits.push_back(random.uniform(2.0F, 9.0F) *
+                                       Vec3(std::cos(v) * std::cos(h), std::cos(v) * std::sin(h), std::sin(v)));
+                    }
+                    static_cast<void>(of.picture.begin(straight_ahead(0.5F)));
+                    look_around(of.picture, hits);
                 }
                 of.slice->begin(2000);
             },
