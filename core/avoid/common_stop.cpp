@@ -50,14 +50,15 @@ float braked(Seconds t, Seconds span) noexcept
 /// A cooperative track that flies on for the latency and stops then, and what else it may do.
 class OtherStop {
 public:
-    [[gnu::cold, gnu::noinline]] OtherStop(const world::Situation& s, const world::Threat& track,
-                                           Seconds ahead) noexcept
+    /// `as_reported`: without what it may have changed since.
+    [[gnu::cold, gnu::noinline]] OtherStop(const world::Situation& s, const world::Threat& track, Seconds ahead,
+                                           bool as_reported = false) noexcept
         : begins_(latency_of(s) + ahead), velocity_(track.velocity), braking_(track.velocity, s.limits), threat_(track)
     {
         const float acceleration = std::max(s.limits.max_acceleration, s.limits.max_vertical_acceleration);
         const float speed = velocity_.norm();
         const float most = speed + std::max(speed, s.limits.cruise_speed);
-        const Seconds unheard = std::max(s.now - track.track->stamp, 0.0F) + latency_of(s);
+        const Seconds unheard = as_reported ? 0.0F : std::max(s.now - track.track->stamp, 0.0F) + latency_of(s);
         const Seconds changes = std::min(unheard, most / acceleration);
         const float unknown = acceleration * changes;
         const float place = 0.5F * unknown * changes + unknown * (unheard - changes);
@@ -182,12 +183,12 @@ private:
         return ahead_ > 0.0F && margin >= 0.0F ? std::min(margin, margin_to(track, own, 0.0F)) : margin;
     }
     [[nodiscard, gnu::cold, gnu::noinline]] float margin_to(const world::Threat& track, const OwnStop& own,
-                                                            Seconds ahead) noexcept
+                                                            Seconds ahead, bool as_reported = false) noexcept
     {
         if (!budget_.spend(units::kStopLook)) {
             return -world::kSeparationCap;
         }
-        const OtherStop other(s_, track, ahead);
+        const OtherStop other(s_, track, ahead, as_reported);
         world::Threat threat = other.threat();
         const float far = (threat.position - s_.own.position).norm() - own.reach - own.sagitta - other.reach() -
                           s_.limits.half_extents.norm() - threat.half_height - threat.radius_at(horizon_);
@@ -253,8 +254,8 @@ private:
         });
     }
 
-    /// Of a vehicle that moves: whether what is wanted comes less near than a stop to each track that not even a stop
-    /// is clear of, and is clear of all others.
+    /// Of a vehicle that moves, where control came too late, so that two meet although they stop as reported: whether
+    /// what is wanted is clear of all tracks but those that not even a stop is clear of, and comes less near to these.
     [[nodiscard, gnu::cold, gnu::noinline]] bool evades(OwnStop& own) noexcept
     {
         if (!wanted_evades_ || s_.own.velocity.norm() <= 2.0F * kLeaving || !(away_.norm() > kTiny)) {
@@ -263,14 +264,17 @@ private:
         OwnStop stop;
         fly(Vec3::Zero(), stop);
         fly(wanted_, own);
+        bool is_late = false;
         const bool better = std::ranges::all_of(tracks_, [&](const world::Threat& track) noexcept {
             if (!counts(track)) {
                 return true;
             }
             const float margin = margin_to(track, own);
-            return margin >= 0.0F || margin > margin_to(track, stop);
+            const float stopped = margin >= 0.0F && is_late ? margin : margin_to(track, stop);
+            is_late = is_late || (stopped < 0.0F && margin_to(track, stop, 0.0F, true) < 0.0F);
+            return margin >= 0.0F || margin > stopped;
         });
-        return better && !budget_.exhausted();
+        return better && is_late && !budget_.exhausted();
     }
 
     /// A stop; or slowly out of the reach of the tracks that not even a stop is clear of.

@@ -26,10 +26,11 @@ namespace jink::avoid {
 /// number of vehicles. What this assumes: docs/guides/common_stop.md.
 ///
 /// A vehicle that stands where not even that is clear of a track leaves its reach at 0.3 m/s, else all would stand for
-/// ever. One that moves flies a `wanted` that `evades` (a manoeuvre's, or the fallback's) where that is clear of all
-/// others, and comes less near to the tracks that a stop is not clear of: control came too late then. `wanted` where
-/// stopping is not clear of anything else and no better than `wanted` there; and for a fixed wing, which cannot stop.
-/// Without budget: a stop. O(tracks), six times for each track that slows the vehicle down.
+/// ever. One that moves flies a `wanted` that `evades` (a manoeuvre's, or the fallback's) where control came too late:
+/// a stop is not clear of a track even if that one has flown as reported since and stops as well. Then `wanted` has to
+/// be clear of all tracks that a stop is clear of, and to come less near to the others. `wanted` where stopping is not
+/// clear of anything else and no better than `wanted` there; and for a fixed wing, which cannot stop. Without budget: a
+/// stop. O(tracks), six times for each track that slows the vehicle down.
 [[nodiscard]] Vec3 stoppable_command(const world::Situation& situation, const Vec3& wanted, float fastest,
                                      WorkBudget& budget, bool evades = false, Seconds ahead = 0.0F) noexcept;
 

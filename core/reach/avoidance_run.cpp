@@ -213,7 +213,9 @@ bool Planner::can_stop(const Situation& situation, const path::TimedPath& path, 
     at.position = path.points.back().position;
     at.velocity = path.points.back().velocity;
     const Seconds step = vehicle::stopping_time(at.velocity, situation.limits) / static_cast<float>(kStopPieces);
-    const float bulge = 0.125F * situation.limits.max_acceleration * step * step;
+    const float acceleration =
+        std::hypot(situation.limits.max_acceleration, situation.limits.max_vertical_acceleration);
+    const float bulge = 0.125F * acceleration * step * step;
     Seconds t = path.duration() - start.lead;
     for (int i = 0; i < kStopPieces; ++i) {
         const Vec3 from = at.position;

@@ -69,6 +69,7 @@ struct LinkDiagnostics {
     std::uint32_t heights_compared = 0;    ///< of these, heights compared with the own pressure altitude
     std::uint32_t traffic_relayed = 0;     ///< ADSB_VEHICLE of other systems, accepted
     std::uint32_t systems_evicted = 0;     ///< other systems on the link whose clock was forgotten: there are too many
+    std::uint32_t sensors_evicted = 0;     ///< range sensors whose number was given away: there are too many
     std::uint32_t keys_set = 0;            ///< for signatures, over the link; taking the key away counts too
     std::uint32_t keys_refused = 0;        ///< unsigned, armed, or without a place to store them
 };

@@ -63,8 +63,8 @@ void write_bus(std::FILE* f, const app::CanBus& bus)
                  n.id_conflicts);
     std::fprintf(f,
                  "    \"not_finite\": %u, \"out_of_range\": %u, \"no_origin\": %u, \"stale_stamps\": %u, "
-                 "\"inbox_full\": %u,\n",
-                 l.not_finite, l.out_of_range, l.no_origin, l.stale_stamp, l.inbox_full);
+                 "\"inbox_full\": %u, \"sensors_evicted\": %u,\n",
+                 l.not_finite, l.out_of_range, l.no_origin, l.stale_stamp, l.inbox_full, l.sensors_evicted);
     std::fprintf(
         f, "    \"full_steps\": %u, \"frames_late\": %u, \"stalls\": %u, \"losses\": %u, \"near_not_sent\": %u,\n",
         b.full_steps, b.frames_late, b.stalls, b.losses, b.near_not_sent);
@@ -80,9 +80,10 @@ void write_link(std::FILE* f, const link::mavlink::Endpoint& endpoint, const hal
     const auto u = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
     std::fprintf(f,
                  "  \"mavlink\": {\"not_finite\": %u, \"out_of_range\": %u, \"no_origin\": %u, \"inbox_full\": %u, "
-                 "\"frames_ignored\": %u, \"own_heard\": %u, \"systems_evicted\": %u,\n",
+                 "\"frames_ignored\": %u, \"own_heard\": %u, \"systems_evicted\": %u, "
+                 "\"sensors_evicted\": %u,\n",
                  l.not_finite, l.out_of_range, l.no_origin, l.inbox_full, l.frames_ignored, l.own_heard,
-                 l.systems_evicted);
+                 l.systems_evicted, l.sensors_evicted);
     std::fprintf(f,
                  "    \"outbox_full\": %u, \"setpoints_dropped\": %u, \"requests_dropped\": %u, "
                  "\"heartbeats_dropped\": %u, \"bytes_discarded\": %u, \"rate_requests\": %u, "

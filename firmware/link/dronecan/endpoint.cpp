@@ -317,6 +317,7 @@ void Endpoint::place(const Context& c, RangeReading& reading, const Vec3& body, 
     // Two nodes may use the same sensor id.
     const std::uint32_t key = static_cast<std::uint32_t>(c.transfer.source) << 24U | beam;
     reading.sensor = static_cast<std::uint8_t>(kFirstBeam + beams_.of(key, c.now));
+    diagnostics_.sensors_evicted = beams_.evicted();
     reading.direction = mavlink::swap_ned_enu(turn(attitude_, body));
     if (!c.inbox.readings.try_push_back(reading)) {
         ++diagnostics_.inbox_full;

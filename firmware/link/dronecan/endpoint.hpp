@@ -29,8 +29,7 @@
 
 namespace jink::link::dronecan {
 
-/// Directions of sensors that are kept apart: a ring of 24 and some fixed ones. `beams_evicted` counts those given
-/// away.
+/// Directions of sensors that are kept apart: a ring of 24 and some fixed ones.
 inline constexpr std::size_t kBeams = 48;
 /// RangeReading::sensor of the first beam: those before it are MAVLink's.
 inline constexpr std::uint8_t kFirstBeam = kMavlinkSensors;
@@ -84,7 +83,6 @@ public:
     [[nodiscard]] const Node& node() const noexcept { return node_; }
     [[nodiscard]] bool has_origin() const noexcept { return options_.has_origin; }
     [[nodiscard]] const LinkDiagnostics& diagnostics() const noexcept { return diagnostics_; }
-    [[nodiscard]] std::uint32_t beams_evicted() const noexcept { return beams_.evicted(); }
 
 private:
     struct Context {

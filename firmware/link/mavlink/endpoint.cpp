@@ -53,6 +53,7 @@ void Endpoint::receive(std::span<const std::byte> bytes, TimePoint now, Inbox& i
                                   p.cut + p.unsigned_refused + p.wrong_signature + p.stale_signature +
                                   p.signature_streams;
     diagnostics_.systems_evicted = neighbours_.evicted();
+    diagnostics_.sensors_evicted = range_sensors_.evicted();
     update_leg(inbox, now);
 }
 

@@ -156,14 +156,14 @@ TEST_F(DronecanEndpoint, EachDirectionOfEachSensorHasItsOwnNumber)
         give(m, 20);
         EXPECT_EQ(++used[inbox.readings[0].sensor], 1);
     }
-    EXPECT_EQ(endpoint.beams_evicted(), 0U);  // 48
+    EXPECT_EQ(endpoint.diagnostics().sensors_evicted, 0U);  // 48
     now = now + 0.01F;
     const std::uint8_t first = number(0.0F, 20);
     now = now + 0.01F;
     const std::uint8_t evicting = number(0.0F, 22);  // one more: the sensor with the oldest report is replaced
     EXPECT_NE(evicting, first);
     EXPECT_EQ(used[evicting], 1);
-    EXPECT_EQ(endpoint.beams_evicted(), 1U);
+    EXPECT_EQ(endpoint.diagnostics().sensors_evicted, 1U);
 }
 
 }  // namespace

@@ -369,6 +369,7 @@ TEST_F(MavlinkEndpointSensors, ReadingsOfSensorsThatAreNotTheSameAreKeptApart)
         EXPECT_NE(given, first);
         EXPECT_EQ(number(158, 0, 0), first) << "heard all the time";
     }
+    EXPECT_EQ(endpoint->diagnostics().sensors_evicted, 18U + 98U - 32U);
 }
 
 TEST_F(MavlinkEndpointSensors, ReadingsAtTheEdges)

@@ -56,6 +56,7 @@ struct Crowd {
         delay = random.uniform(0.0F, 1.0F);
         // A set-point counts from the next one on.
         held = random.below(static_cast<std::uint64_t>(rules.latency / kTick));
+        evades = random.below(2) == 0;
         const std::size_t n = 2 + random.below(5);
         const float apart = 30.0F + limits.cruise_speed * limits.cruise_speed / limits.max_acceleration;
         for (std::size_t i = 0; i < n; ++i) {
@@ -119,7 +120,7 @@ struct Crowd {
         const Vec3& wants = vehicles[own].wants;
         Flier& v = vehicles[own];
         const float fastest = v.is_held_back ? v.said.norm() + limits.max_acceleration * kTick : kAny;
-        v.said = stoppable_command(s, wants, fastest, budget);
+        v.said = stoppable_command(s, wants, fastest, budget, evades);
         v.is_held_back = v.said != wants;
         slowed += v.is_held_back ? 1 : 0;
         return v.said;
@@ -171,6 +172,7 @@ struct Crowd {
     float loss = 0.0F;
     Seconds delay = 0.0F;
     std::size_t held = 0;
+    bool evades = false;  ///< what is wanted is said to be a manoeuvre
     std::vector<Flier> vehicles;
     std::deque<std::vector<Report>> past;
     TimePoint now{1'000'000};
@@ -215,10 +217,11 @@ struct Pair : world::test::Scene {
         t.cooperative = true;
         return t;
     }
-    [[nodiscard]] Vec3 flown(const Vec3& wanted = {4, 0, 0}, std::uint32_t units = 100'000, float fastest = kAny) const
+    [[nodiscard]] Vec3 flown(const Vec3& wanted = {4, 0, 0}, std::uint32_t units = 100'000, float fastest = kAny,
+                             bool evades = false) const
     {
         WorkBudget budget(units);
-        return stoppable_command(situation(), wanted, fastest, budget);
+        return stoppable_command(situation(), wanted, fastest, budget, evades);
     }
 };
 
@@ -267,6 +270,24 @@ TEST(CommonStop, StopsInFrontOfOneThatComes)
     EXPECT_EQ(pair.flown(), Vec3(0, 0, 0));
     pair.tracks[0].cooperative = false;
     EXPECT_EQ(pair.flown(), Vec3(4, 0, 0)) << "that one does not stop: the planners' business";
+}
+
+/// One comes from the right. A stop is too late for a near one, which flying on is better for; and not clear of a far
+/// one only as long as that may have come nearer since its report.
+TEST(CommonStop, EvadesWhereAStopIsTooLateAsReported)
+{
+    const Vec3 on = {4, 0, 0};
+    Pair near;
+    near.other({0.5F, -3.5F, 0}, {0, 4, 0});
+    EXPECT_EQ(near.flown(on, 100'000, kAny, true), on);
+    EXPECT_EQ(near.flown(on), Vec3(0, 0, 0)) << "no manoeuvre";
+    EXPECT_EQ(near.flown({0, -4, 0}, 100'000, kAny, true), Vec3(0, 0, 0)) << "nearer than a stop";
+    Pair old;
+    old.other({0.5F, -8, 0}, {0, 4, 0}).stamp = old.now - 1.0F;
+    EXPECT_EQ(old.flown(on, 100'000, kAny, true), Vec3(0, 0, 0));
+    Pair both = near;
+    both.other({4, 0, 0}, {0, 0, 0});
+    EXPECT_EQ(both.flown(on, 100'000, kAny, true), Vec3(0, 0, 0)) << "into one that a stop is clear of";
 }
 
 TEST(CommonStop, LeavesTheReachOfOneThatStandsTooNear)
