@@ -33,6 +33,27 @@ TEST(AnswerCounter, CountsBothEndsOfAPlan)
     EXPECT_EQ(after({step(PlanStatus::running), step(PlanStatus::found)}).first, 0U) << "found, but not flown";
 }
 
+TEST(AnswerCounter, CountsFromTheFirstPlanThroughPlansWithoutAnAnswer)
+{
+    const auto conflicting = [](PlanStatus status, std::uint8_t by = 0) {
+        avoid::Guidance guidance = step(status, by);
+        guidance.conflict.emplace();
+        return guidance;
+    };
+    EXPECT_EQ(after({conflicting(PlanStatus::found, 1)}).from_first_plan, 1U);
+    EXPECT_EQ(after({conflicting(PlanStatus::no_conflict), conflicting(PlanStatus::running),
+                     conflicting(PlanStatus::none_available), conflicting(PlanStatus::no_conflict),
+                     conflicting(PlanStatus::found, 1), conflicting(PlanStatus::found, 1)})
+                  .from_first_plan,
+              4U);
+    EXPECT_EQ(
+        after({conflicting(PlanStatus::running), step(PlanStatus::no_conflict), conflicting(PlanStatus::found, 1)})
+            .from_first_plan,
+        1U)
+        << "another conflict";
+    EXPECT_EQ(after({conflicting(PlanStatus::running)}).from_first_plan, 0U);
+}
+
 TEST(AnswerCounter, APlanWithoutAnAnswerOrThatIsDroppedDoesNotCount)
 {
     const StepsToAnswer one = after({step(PlanStatus::running), step(PlanStatus::none_available),

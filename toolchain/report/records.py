@@ -222,6 +222,17 @@ class Bench:
         rows = [[name, count] for count, name in first if name]
         return [*rows, ["all others", answer.instructions - sum(count for _, count in rows)]]
 
+    def by_stage(self, target, name):
+        """{stage: instructions} of the record of an update or a plan."""
+        with tempfile.TemporaryDirectory() as folder:
+            file = str(pathlib.Path(folder) / "stages")
+            path = self.folder / f"{name}.json"
+            record = json.loads(path.read_text(encoding="utf-8"))
+            kind = targets.Probe if "case" in record else flights.StepProbe
+            stages.write(targets.program_of(target, self.build, kind.PROGRAM), target, file)
+            answer = self.one(target, read_case(path)[1], file) if "case" in record else self.step(target, record, file)[0]
+        return {n: c for n, c in zip(stages.NAMES, answer.by_stage) if c}
+
     def flags(self, target):
         """The compiler's options for core, without paths, warnings and what only reports."""
         commands = json.loads((pathlib.Path(self.build) / target / "compile_commands.json").read_text(encoding="utf-8"))
@@ -233,7 +244,7 @@ class Bench:
         """What the sheet of a board says beside the counts: the record `worst` by function, flags, interrupts, loops of a plan."""
         import bound_loops
         import memory_sizes
-        return {"record": worst, "functions": self.by_function(target, worst), "flags": self.flags(target),
+        return {"record": worst, "functions": self.by_function(target, worst), "stages": self.by_stage(target, worst), "flags": self.flags(target),
                 "interrupts": bound_loops.interrupts(memory_sizes.image_of(self.build, target)),
                 "loops": bound_loops.loops_of_plan(targets.program_of(target, self.build), "plan_16_3")}
 

@@ -25,6 +25,7 @@ STAGES = [
     ("objective", r"^core/avoid/objective"),
     ("picture of a plan", r"^core/(world/snapshot|avoid/sliced_plan)"),
     ("final check", r"^core/avoid/final_check\.cpp"),
+    ("common stop", r"^core/avoid/common_stop\.cpp"),
     ("fallback", r"^core/avoid/fallback"),
 ]
 PLACE = re.compile(r"/((?:core|firmware|hal)/[^:]*)")

@@ -24,6 +24,11 @@ RATE = pathlib.Path(__file__).resolve().parents[2] / "firmware/app/work_rate.hpp
 UNCOUNTED, SHARE, MANDATORY = (int(re.search(rf"\b{name} =\s+([\d']+);", RATE.read_text(encoding="utf-8"))[1].replace("'", ""))
                                for name in ("kUncounted", "kSharePercent", "kMandatoryPercent"))
 MARGIN = 2
+FORMULA = (f"Work units of a step = ({SHARE} % of the instructions in a tick - {UNCOUNTED}) / {records.MOST_PER_UNIT}; of its mandatory part the same with {MANDATORY} %; what is "
+           f"left is for planning. Instructions in a tick = clock x 20 ms / {CYCLES} (firmware/app/work_rate.hpp).")
+# Steps of the same scenarios at commit 9a61be06 (docs/timing/README.md there), before plans were made in slices: median, mean and most.
+BEFORE = {("step_flights", "mps2_an500"): (10_505, 46_470, 2_533_967), ("step_flights", "stm32f405"): (10_979, 48_535, 2_430_150),
+          ("step_crowd", "mps2_an500"): (393_736, 1_324_246, 5_402_160), ("step_crowd", "stm32f405"): (325_690, 1_053_775, 5_524_550)}
 ENDS = {"mps2_an500": ("watchdog", 250), "stm32f405": ("step guard", 150)}
 CLOCKS = {target: (clock, *([records.FASTER] if target == "mps2_an500" else [])) for target, clock in records.CLOCKS.items()}
 
@@ -40,6 +45,12 @@ def worst_of(kept, scene, target):
     """The most expensive record of a scene on a target: (name, values)."""
     mine = {n: v for n, v in kept["targets"][target]["records"].items() if n.split(".")[0] == scene}
     return max(mine.items(), key=lambda item: item[1]["instructions"]) if mine else (None, None)
+
+
+def most_found(kept, scene, target):
+    """The most instructions of a scene on a target, in its records and in its longest hunt, whose case need not be a record any more."""
+    found = (worst_of(kept, scene, target)[1] or {}).get("instructions", 0)
+    return max(found, hunts().get(f"{scene}.{target}", {}).get("most", 0))
 
 
 def scenes_found(kept):
@@ -62,14 +73,14 @@ def _table_sets(kept):
     yield row(*["---"] * (1 + 3 * len(records.CLOCKS)))
     for n, of in {**scenes.METHODS, 7: "all"}.items():
         names = ("update_full", "step_full") if n == 7 else (f"update_set_{n}", f"step_set_{n}")
-        cells = [number(x) for t in records.CLOCKS for x in (*((worst_of(kept, s, t)[1] or {}).get("instructions", 0) for s in names), composed(kept, t)[0])]
+        cells = [number(x) for t in records.CLOCKS for x in (*(most_found(kept, s, t) for s in names), composed(kept, t)[0])]
         yield row(f"{n}: {of}", *cells)
 
 
 def _table_hunts():
     yield row("hunt", "target", "evaluations", "most found", "command")
     yield row(*["---"] * 5)
-    for name, h in sorted(json.loads(HUNTS.read_text(encoding="utf-8")).items()) if HUNTS.exists() else []:
+    for name, h in sorted(hunts().items()):
         yield row(*name.split("."), number(h["evaluations"]), number(h["most"]), f"`{h['command']}`")
 
 
@@ -86,6 +97,14 @@ def _table_typical(kept):
             if v is None:
                 continue
             yield row(title if i == 0 else "", target, v["cases"], *(number(v[k]) for k in ("least", "median", "mean", "p99", "most")), v["most_seed"])
+
+
+def _table_before(kept):
+    yield row("step", "target", "median before", "now", "mean before", "now", "most before", "now")
+    yield row(*["---"] * 8)
+    for (name, target), before in BEFORE.items():
+        v = kept["targets"][target]["typical"][name]
+        yield row(scenes.STEPS[name], target, *(cell for key, old in zip(("median", "mean", "most"), before) for cell in (number(old), number(v[key]))))
 
 
 def _table_time(kept):
@@ -132,9 +151,13 @@ def units_of(kept, target):
     return (rate["units"], rate["slice"]) if rate else (UNITS, 0)
 
 
-def hunts_of(target):
-    """The longest hunts on a target. Older ones do not say the `work` of what they found."""
-    return [h for n, h in (json.loads(HUNTS.read_text(encoding="utf-8")) if HUNTS.exists() else {}).items() if n.endswith("." + target)]
+def hunts():
+    """The longest hunts, by scene and target. Older ones do not say the `work` of what they found."""
+    return json.loads(HUNTS.read_text(encoding="utf-8")) if HUNTS.exists() else {}
+
+
+def hunts_of(target, scene=""):
+    return [h for n, h in hunts().items() if n.startswith(scene) and n.endswith("." + target)]
 
 
 def composed(kept, target):
@@ -153,11 +176,13 @@ def composed(kept, target):
 
 
 def worst_steps(kept, target):
-    """The most expensive step and update found, in flights and crowds and by hunts, whether its case is a record or not."""
-    typical = kept["targets"][target]["typical"]
-    found = [h["most"] for h in hunts_of(target)]
-    found += [v["instructions"] for n, v in kept["targets"][target]["records"].items() if n.startswith(("step", "update"))]
-    return max(found + [v["most"] for n, v in typical.items() if n.startswith(("step", "update"))])
+    """The most expensive step found, in flights and crowds and by hunts, whether its case is a record or not. An update is a step without
+    what no unit counts: the most that was found of that is added to it."""
+    def most(scene):
+        found = [h["most"] for h in hunts_of(target, scene)]
+        found += [v["instructions"] for n, v in kept["targets"][target]["records"].items() if n.startswith(scene)]
+        return max(found + [v["most"] for n, v in kept["targets"][target]["typical"].items() if n.startswith(scene)])
+    return max(most("step"), most("update") + composed(kept, target)[3])
 
 
 def worst_record(kept, target):
@@ -243,7 +268,8 @@ def _on_host():
 
 def generated(kept):
     lines = [BEGIN, "", "## Does a step fit into its tick?", "", *_table_verdict(kept), "",
-             f"At {CYCLES} cycles an instruction, which is assumed: no board has been timed. Interrupts are not in it.", "", "## Worst found", "", *_table_worst(kept), "", *_goals(kept), "",
+             f"At {CYCLES} cycles an instruction, which is assumed: no board has been timed. Interrupts are not in it. The worst step found is the most of a step, or of an update with "
+             "the most that no unit counts beside it.", "", FORMULA, "", "## Worst found", "", *_table_worst(kept), "", *_goals(kept), "",
              "![distribution](plan_16_3.svg)", "", "## The bound above", "", *_table_bound(kept), "",
              f"A step is bounded by its work alone: its units at {records.MOST_PER_UNIT} instructions each, or at the most that was found in any record of an update or a step "
              f"where that is more; and {number(UNCOUNTED)} instructions for what no unit counts (the link, the tables, the snapshot of a plan, the flight of the tick), or {MARGIN} times "
@@ -251,7 +277,7 @@ def generated(kept):
              "is told no clock.", "",
              *_table_composed(kept), "", "By the methods that are asked:", "", *_table_sets(kept), "", "The longest hunts:", "", *_table_hunts(), "", "## Where they go", "", "![stages of the worst](stages_worst.svg)", "",
              "Of the random problems, on average:", "", "![stages of random problems](stages_typical.svg)", "", "## Typical, and full capacity at random", "",
-             *_table_typical(kept), "", "![distribution](update_typical.svg)", "", "## As time: an estimate", "",
+             *_table_typical(kept), "", "![distribution](update_typical.svg)", "", "**Steps before plans were made in slices** (commit 9a61be06) and now:", "", *_table_before(kept), "", "## As time: an estimate", "",
              f"Instructions times {CYCLES} cycles each, an assumption: roots and divisions take 14 cycles, flash waits, two instructions at once save "
              "some. No board has been timed.", "", *_table_time(kept), ""]
     lines += _on_host()

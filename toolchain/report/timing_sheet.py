@@ -57,6 +57,8 @@ def _board(kept, memory, board, page):
            f"{records.MOST_PER_UNIT} instructions ({page.number(planning)} of them for planning) and {page.number(fixed)} that no unit counts, "
            f"{page.number(step['step'])} together. Worst found: {page.number(step['worst'])}.")
     yield ""
+    yield page.FORMULA
+    yield ""
     of = memory["targets"][board]
     stack = of["stack by call graph"]
     yield page.row("", "")
@@ -76,11 +78,18 @@ def _board(kept, memory, board, page):
     for words, handler, times, each in load:
         yield page.row(words, f"`{handler}`", page.number(times), each, f"{100 * times * each / step['tick']:.1f} %")
     yield ""
-    yield f"The worst record of an update ({worst}), by function, what each executes itself:"
+    yield f"The worst record of an update ({worst}), by stage:"
+    yield ""
+    yield page.row("stage", "instructions", "share")
+    yield page.row(*["---"] * 3)
+    total = sum(sheet["stages"].values())
+    for name, count in sorted(sheet["stages"].items(), key=lambda item: -item[1]):
+        yield page.row(name, page.number(count), f"{100 * count / total:.1f} %")
+    yield ""
+    yield "The same by function, what each executes itself:"
     yield ""
     yield page.row("function", "instructions", "share")
     yield page.row(*["---"] * 3)
-    total = sum(count for _, count in sheet["functions"])
     for name, count in sheet["functions"]:
         yield page.row(f"`{short(name)}`" if name != "all others" else name, page.number(count), f"{100 * count / total:.1f} %")
     yield ""

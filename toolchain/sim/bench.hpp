@@ -49,12 +49,24 @@ public:
         }
         steps_ = guidance.plan_status == world::PlanStatus::running ? steps_ : 0;
         by_ = guidance.by;
+        note_conflict(guidance, plans);
     }
     [[nodiscard]] const StepsToAnswer& counted() const noexcept { return counted_; }
 
 private:
+    void note_conflict(const avoid::Guidance& guidance, bool plans)
+    {
+        since_first_plan_ = plans || since_first_plan_ > 0 ? since_first_plan_ + 1 : 0;
+        if (guidance.by != 0 && counted_.from_first_plan == 0) {
+            counted_.from_first_plan = since_first_plan_;
+        }
+        since_first_plan_ =
+            guidance.conflict || guidance.plan_status == world::PlanStatus::running ? since_first_plan_ : 0;
+    }
+
     StepsToAnswer counted_;
-    unsigned steps_ = 0;  ///< of the plan that goes on
+    unsigned steps_ = 0;             ///< of the plan that goes on
+    unsigned since_first_plan_ = 0;  ///< of the conflict that goes on
     std::uint8_t by_ = 0;
 };
 

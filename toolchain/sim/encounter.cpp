@@ -62,6 +62,7 @@ void each_column(Result& r, Visit&& visit)
     visit("away", r.away);
     visit("first_answer", r.to_answer.first);
     visit("slowest_answer", r.to_answer.slowest);
+    visit("answer_from_first_plan", r.to_answer.from_first_plan);
 }
 
 std::string text_of(Stack stack) { return std::string(to_string(stack)); }

@@ -152,6 +152,8 @@ void put_measures(std::string& text, const Results& results)
                       [](const EncounterResult& r) { return r.to_answer.first; });
         put_quantiles(text, answered, "slowest answer [steps]",
                       [](const EncounterResult& r) { return r.to_answer.slowest; });
+        put_quantiles(text, answered, "with failed plans [steps]",
+                      [](const EncounterResult& r) { return r.to_answer.from_first_plan; });
     }
 }
 

@@ -53,6 +53,8 @@ struct Durations {
 struct StepsToAnswer {
     unsigned first = 0;    ///< of a flight; 0: none was flown
     unsigned slowest = 0;  ///< of all
+    /// From the first plan of the first conflict that was answered, with plans before that had no answer.
+    unsigned from_first_plan = 0;
 };
 
 /// Internals of the co-processor.
