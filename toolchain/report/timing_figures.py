@@ -14,7 +14,7 @@ VERSION = matplotlib.__version__
 TITLES = {"mps2_an500": "Cortex-M7", "stm32f405": "Cortex-M4F (F405)", "armhf": "ARM Linux, 32 bits", "aarch64": "ARM Linux, 64 bits"}
 INK, GRID, BAR, WORST, GOAL = "#2b2f36", "#d9dde3", "#5b8fc7", "#c62828", "#1e9e3e"
 COLOURS = ["#8a93a0", "#c9b458", "#a68a64", "#6f9f6f", "#1d5fa8", "#4db6ac", "#90a4ae", "#7e57c2", "#5bb8e8", "#b0bec5", "#e07b1a",
-           "#9ccc65", "#c62828", "#f48fb1", "#ffd54f", "#00897b", "#37474f", "#ff7043", "#80cbc4", "#8e3fa8", "#5d4037"]
+           "#9ccc65", "#c62828", "#f48fb1", "#ffd54f", "#00897b", "#37474f", "#ff7043", "#80cbc4", "#8e3fa8", "#5d4037", "#9fa8da"]
 
 plt.rcParams.update({
     "font.family": "sans-serif", "font.size": 9, "axes.edgecolor": "#8a93a0", "axes.labelcolor": INK, "text.color": INK,
