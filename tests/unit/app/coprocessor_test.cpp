@@ -284,6 +284,27 @@ TEST(CoprocessorReboot, ForgetsEverythingThatTheOldAutopilotSaidAndRecovers)
     EXPECT_EQ(f->coprocessor.takeover_diagnostics().taken, 2U);
 }
 
+/// A threat that appears at 16 m, 3 s ahead. The first one is ahead on the way, the second one aside.
+TEST(CoprocessorStream, AThreatThatAppearsNearIsAnsweredInTheStepThatHearsIt)
+{
+    for (const Vec3& place : {Vec3(0.4F, 16.0F, 0.0F), Vec3(40.0F, 16.0F, 0.0F)}) {
+        const auto f = make_flight();
+        ASSERT_NO_FATAL_FAILURE(settle(*f));
+        while (f->ticks % 10 != 0) {
+            f->fly(1);
+        }
+        ASSERT_EQ(f->last.tracks, 0U);
+        f->obstacles = {f->position + place};
+        f->fly(1);
+        const bool near = place.x() < 1.0F;
+        EXPECT_EQ(f->last.guidance.wants_control, near);
+        EXPECT_EQ(f->last.guidance.by != 0, near);
+        EXPECT_EQ(f->said_of<SetPositionTargetLocalNed>().size(), near ? 1U : 0U);
+        EXPECT_EQ(f->mode_requests().size(), near ? 1U : 0U);
+        EXPECT_EQ(f->last.tracks, 1U);
+    }
+}
+
 /// The stream has a fixed rate, but a new decision is sent at once.
 TEST(CoprocessorStream, ANewCommandGoesOutInTheStepThatDecidesIt)
 {
