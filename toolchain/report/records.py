@@ -24,6 +24,7 @@ MOST_PER_UNIT = 170
 # The boards' clocks [MHz]: firmware/*/main.cpp (kRate, kClock). Their updates and steps are counted with the work of these.
 CLOCKS = {"mps2_an500": 216, "stm32f405": 168}
 REDUCED_SETS = ("stm32f405",)  # these fly the reduced reach sets
+NOT_COUNTED = {"stm32h743": 400}  # images that no emulator runs, and their clocks [MHz] (kClock)
 FASTER = 480  # of another Cortex-M7, which the same image runs on [MHz]
 PER_DECADE = 20  # bins of a histogram; from 10^4 instructions on
 DECADES = 4
@@ -209,28 +210,26 @@ class Bench:
         with concurrent.futures.ThreadPoolExecutor(2) as pool:
             return dict(zip(names, pool.map(self.of_target, names)))
 
-    def by_function(self, target, name, most=15):
-        """The functions that a record executes most instructions in, their own alone: [name, instructions], and the rest."""
+    def _assigned(self, target, name, write):
+        """The answer to a record, its instructions assigned to code as `write` does (stages.py), and what that returns."""
         with tempfile.TemporaryDirectory() as folder:
-            file = str(pathlib.Path(folder) / "functions")
+            file = str(pathlib.Path(folder) / "assigned")
             path = self.folder / f"{name}.json"
             record = json.loads(path.read_text(encoding="utf-8"))
             kind = targets.Probe if "case" in record else flights.StepProbe
-            names = stages.write_functions(targets.program_of(target, self.build, kind.PROGRAM), target, file)
-            answer = self.one(target, read_case(path)[1], file) if "case" in record else self.step(target, record, file)[0]
+            names = write(targets.program_of(target, self.build, kind.PROGRAM), target, file)
+            return self.one(target, read_case(path)[1], file) if "case" in record else self.step(target, record, file)[0], names
+
+    def by_function(self, target, name, most=15):
+        """The functions that a record executes most instructions in, their own alone: [name, instructions], and the rest."""
+        answer, names = self._assigned(target, name, stages.write_functions)
         first = sorted(zip(answer.by_stage, names), reverse=True)[:most]
         rows = [[name, count] for count, name in first if name]
         return [*rows, ["all others", answer.instructions - sum(count for _, count in rows)]]
 
     def by_stage(self, target, name):
-        """{stage: instructions} of the record of an update or a plan."""
-        with tempfile.TemporaryDirectory() as folder:
-            file = str(pathlib.Path(folder) / "stages")
-            path = self.folder / f"{name}.json"
-            record = json.loads(path.read_text(encoding="utf-8"))
-            kind = targets.Probe if "case" in record else flights.StepProbe
-            stages.write(targets.program_of(target, self.build, kind.PROGRAM), target, file)
-            answer = self.one(target, read_case(path)[1], file) if "case" in record else self.step(target, record, file)[0]
+        """{stage: instructions} of a record."""
+        answer, _ = self._assigned(target, name, stages.write)
         return {n: c for n, c in zip(stages.NAMES, answer.by_stage) if c}
 
     def flags(self, target):
@@ -250,7 +249,7 @@ class Bench:
 
     def rates(self):
         """{clock [MHz]: instructions of a tick, work units of a step, and of those of its slice} (firmware/app/work_rate.hpp)."""
-        clocks = sorted({*CLOCKS.values(), FASTER})
+        clocks = sorted({*CLOCKS.values(), *NOT_COUNTED.values(), FASTER})
         lines = subprocess.run([self.sim, "rates", *map(str, clocks)], check=True, capture_output=True, text=True).stdout.splitlines()
         return {line.split()[0]: dict(zip(("instructions", "units", "slice"), map(int, line.split()[1:]))) for line in lines}
 

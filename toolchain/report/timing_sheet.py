@@ -95,6 +95,19 @@ def _board(kept, memory, board, page):
     yield ""
 
 
+def _not_counted(kept, image, clock, page):
+    rate = kept["rates"][str(clock)]
+    bounds = [units * records.MOST_PER_UNIT + page.UNCOUNTED for units in (rate["units"], rate["units"] - rate["slice"])]
+    yield f"## Image {image}: by the formula alone"
+    yield ""
+    yield page.row("clock", "work units of a step, of those for planning", "bound of a step", "its mandatory part", "worst step found")
+    yield page.row(*["---"] * 5)
+    yield page.row(f"{clock} MHz", f"{page.number(rate['units'])}, {page.number(rate['slice'])}", *(f"{100 * n / rate['instructions']:.1f} % of the tick" for n in bounds), "not counted")
+    yield ""
+    yield "No emulator runs this image: nothing of it is counted, and its interrupts are not bounded. The price of a unit is that of the same core on mps2_an500."
+    yield ""
+
+
 def short(name):
     """Without arguments, template arguments and the project's own namespace."""
     plain = re.sub(r"\[clone[^]]*\]|\(anonymous namespace\)::|jink::", "", name)
@@ -110,10 +123,12 @@ def generated(kept):
     lines = [BEGIN, ""]
     for board in kept["sheet"]:
         lines += _board(kept, memory, board, page)
+    for image, clock in records.NOT_COUNTED.items():
+        lines += _not_counted(kept, image, clock, page)
     lines += ["## Turns of a plan's loops", "", "For the bound by the code alone, 16 candidates and 3 threats; the same on both images.", "",
               page.row("place of the loop (pattern)", "turns", "counted", "from"), page.row(*["---"] * 4)]
     for pattern, how, count, keys in kept["sheet"]["stm32f405"]["loops"]:
-        lines.append(page.row("`" + pattern.replace("|", "\\|") + "`", count, "each time it is entered" if how == "each" else "in all of a call", keys or "the code"))
+        lines.append(page.row("`" + pattern.replace("|", "\\|") + "`", count, "each time it is entered" if how == "each" else "in all of a call", keys or "a constant of the code"))
     return "\n".join(lines + ["", END])
 
 
