@@ -26,7 +26,7 @@ UNCOUNTED, SHARE, MANDATORY = (int(re.search(rf"\b{name} =\s+([\d']+);", RATE.re
 MARGIN = 2
 FORMULA = (f"Work units of a step = ({SHARE} % of the instructions in a tick - {UNCOUNTED}) / {records.MOST_PER_UNIT}; of its mandatory part the same with {MANDATORY} %; what is "
            f"left is for planning. Instructions in a tick = clock x 20 ms / {CYCLES} (firmware/app/work_rate.hpp).")
-# Steps of the same scenarios at commit 9a61be06 (docs/timing/README.md there), before plans were made in slices: median, mean and most.
+# Steps of the same scenarios as that commit's timing page has them, before plans were made in slices: median, mean and most.
 BEFORE = {("step_flights", "mps2_an500"): (10_505, 46_470, 2_533_967), ("step_flights", "stm32f405"): (10_979, 48_535, 2_430_150),
           ("step_crowd", "mps2_an500"): (393_736, 1_324_246, 5_402_160), ("step_crowd", "stm32f405"): (325_690, 1_053_775, 5_524_550)}
 ENDS = {"mps2_an500": ("watchdog", 250), "stm32f405": ("step guard", 150)}
