@@ -74,7 +74,7 @@ TEST(EncounterResult, TheShortTrialsCountAsTheLongOnes)
 }
 
 /// A flight straight along x, 2 m off, then on: its measures are computed by hand.
-TEST(EncounterResult, MeasuresDeviationAndEffort)
+TEST(EncounterResult, MeasuresDeviationDetourAndEffort)
 {
     const Scenario s = encounter_scenario(3, {});
     Record record = fly_in_process(s);
@@ -95,6 +95,9 @@ TEST(EncounterResult, MeasuresDeviationAndEffort)
     EXPECT_NEAR(r.acceleration, 4 * 0.5 * 4.5, 1e-9);  // trapezoids of 0 and 9
     EXPECT_NEAR(r.jerk, 4 * 9.0 / 0.5, 1e-9);
     EXPECT_NEAR(r.away, 1.0, 1e-9);
+    const double leg = (s.mission[1] - s.mission[0]).norm();
+    const double flown = 3.0 + std::sqrt(5.0);
+    EXPECT_NEAR(r.detour, flown + std::hypot(leg - 4.0, 4.0) - std::hypot(leg, 2.0), 1e-9);
 }
 
 EncounterResult ended(std::uint64_t seed, Outcome outcome, double separation, bool avoidable)

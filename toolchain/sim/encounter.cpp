@@ -63,6 +63,7 @@ void each_column(Result& r, Visit&& visit)
     visit("first_answer", r.to_answer.first);
     visit("slowest_answer", r.to_answer.slowest);
     visit("answer_from_first_plan", r.to_answer.from_first_plan);
+    visit("detour", r.detour);
 }
 
 std::string text_of(Stack stack) { return std::string(to_string(stack)); }
@@ -102,12 +103,14 @@ bool read(std::string_view text, Number& value)
     return bad == std::errc{} && end == text.data() + text.size();
 }
 
-/// The manoeuvre's costs: deviation from the leg, and effort.
+/// The manoeuvre's costs: deviation from the leg, detour, and effort.
 void measure(const Scenario& scenario, const std::vector<Sample>& samples, EncounterResult& result)
 {
     const Vec& start = scenario.mission[0];
-    const Vec forward = (scenario.mission[1] - start).normalized();
+    const Vec& goal = scenario.mission[1];
+    const Vec forward = (goal - start).normalized();
     double squares = 0.0;
+    double flown = 0.0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const Vec from_start = samples[i].position - start;
         const double off = (from_start - forward * from_start.dot(forward)).norm();
@@ -116,12 +119,17 @@ void measure(const Scenario& scenario, const std::vector<Sample>& samples, Encou
         if (i == 0) {
             continue;
         }
+        flown += (samples[i].position - samples[i - 1].position).norm();
         const double step = samples[i].time - samples[i - 1].time;
         const Vec change = samples[i].acceleration - samples[i - 1].acceleration;
         result.acceleration +=
             0.5 * step * (samples[i].acceleration.squaredNorm() + samples[i - 1].acceleration.squaredNorm());
         result.jerk += change.squaredNorm() / step;
         result.away += samples[i].mode == Mode::external ? step : 0.0;
+    }
+    if (!samples.empty()) {
+        const double straight = (goal - samples.front().position).norm();
+        result.detour = flown + (goal - samples.back().position).norm() - straight;
     }
     result.deviation_rms = samples.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(samples.size()));
 }

@@ -48,6 +48,8 @@ struct EncounterResult {
     double jerk = 0.0;               ///< integral of the squared jerk, from differences of 20 ms [m2/s5]
     double away = 0.0;               ///< time under the co-processor's control [s]
     StepsToAnswer to_answer;
+    /// Flown, and straight on to the goal from where the flight ended, less the straight line from start to goal [m].
+    double detour = 0.0;
 };
 
 /// What is flown, and the configuration of the co-processor that flies it.

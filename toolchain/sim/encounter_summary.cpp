@@ -140,6 +140,7 @@ void put_measures(std::string& text, const Results& results)
     put_quantiles(text, results, "separation [m]", [](const EncounterResult& r) { return r.separation; });
     put_quantiles(text, results, "deviation, most [m]", [](const EncounterResult& r) { return r.deviation_most; });
     put_quantiles(text, results, "deviation, rms [m]", [](const EncounterResult& r) { return r.deviation_rms; });
+    put_quantiles(text, results, "detour [m]", [](const EncounterResult& r) { return r.detour; });
     put_quantiles(text, results, "acceleration^2 [m2/s3]", [](const EncounterResult& r) { return r.acceleration; });
     put_quantiles(text, results, "jerk^2 [m2/s5]", [](const EncounterResult& r) { return r.jerk; });
     put_quantiles(text, results, "under control [s]", [](const EncounterResult& r) { return r.away; });
