@@ -77,7 +77,8 @@ bool Plant::is_below_floor() const
     constexpr double kFollowing = 0.5;
     const Vec& position = world_.own().position;
     const double leg = autopilot_.mission().height_abeam(position);
-    const bool follows = autopilot_.mode() == Mode::mission && leg - position.z() <= kFollowing;
+    // As its autopilot believes: an own position that is wrong is no descent of jink's.
+    const bool follows = autopilot_.mode() == Mode::mission && leg - autopilot_.believed_position().z() <= kFollowing;
     return scenario_.floor && position.z() < *scenario_.floor && leg >= *scenario_.floor && !follows;
 }
 
