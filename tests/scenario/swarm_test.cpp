@@ -334,6 +334,7 @@ TEST(Swarm, TouchesNobodyAtRandom)
         setup.delay = double(random.uniform(0.0F, 1.0F));
         setup.loss = double(random.uniform(0.0F, 0.6F));
         setup.stack = random.below(2) == 0 ? Stack::px4 : Stack::ardupilot;
+        setup.both_stacks = random.below(2) == 0;
         const double size = double(random.uniform(0.25F, 1.0F));
         setup.body = size;
         setup.level = 5.0 * size;

@@ -37,6 +37,7 @@ struct SwarmSetup {
     double duration = 180.0;  ///< at most [s]
     Board board;
     Stack stack = Stack::ardupilot;
+    bool both_stacks = false;                  ///< every second autopilot is a PX4 in place of `stack`
     std::map<std::string, double> parameters;  ///< of the co-processors, in addition to `swarm_parameters`
     std::map<std::string, double> others;      ///< of every second vehicle's, in addition to these
 };

@@ -37,6 +37,7 @@ SwarmSetup setup_of(const SwarmOptions& options)
 {
     SwarmSetup setup = options.setup;
     setup.stack = options.stack == "px4" ? Stack::px4 : Stack::ardupilot;
+    setup.both_stacks = options.stack == "both";
     setup.parameters = parse_parameters(options.parameters);
     setup.others = parse_parameters(options.others);
     if (options.daemon && (!setup.others.empty() || setup.slow != 1.0)) {
@@ -106,7 +107,8 @@ CLI::App& add_swarm(CLI::App& cli, SwarmOptions& options)
     command->add_option("--delay", s.delay, "of broadcasts, default 0 [s]")->check(finite(0.0, 1.9));
     command->add_option("--duration", s.duration, "at most, default 180 [s]")->check(finite(1.0, 3600.0));
     static_cast<void>(add_board(*command, s.board));
-    command->add_option("--stack", options.stack, "of the autopilots")->check(CLI::IsMember({"ardupilot", "px4"}));
+    command->add_option("--stack", options.stack, "of the autopilots; both: in turns")
+        ->check(CLI::IsMember({"ardupilot", "px4", "both"}));
     command->add_option("--parameters", options.parameters, "NAME=VALUE of the co-processors, any number of them");
     command->add_option("--seed", options.seed, "the first, default 1")->check(any_seed());
     command->add_option("--count", options.count, "seeds, default 1")->check(whole(1, 1'000'000));

@@ -77,7 +77,7 @@ Scenario swarm_scenario(const SwarmSetup& setup, std::uint64_t seed, unsigned in
     s.title = s.name;
     s.seed = seed * 1000U + index;
     s.system = static_cast<std::uint8_t>(index + 1);
-    s.stack = setup.stack;
+    s.stack = setup.both_stacks && index % 2 == 1 ? Stack::px4 : setup.stack;
     s.duration = setup.duration;
     s.to_goal = true;
     s.body_radius = setup.body;
