@@ -210,9 +210,9 @@ TEST(InProcess, TheFloorIsBrokenWhereTheLegIsNot)
     EXPECT_FALSE(follows.below_floor);
     // One that believes to be higher than it is still follows its leg.
     s.start_position = s.mission[0];
-    s.own.bias_vertical = 1.5;
+    s.own.bias_vertical = 1.0;
     s.own.bias_time = 60.0;
-    for (s.seed = 1; s.seed <= 10; ++s.seed) {
+    for (s.seed = 1; s.seed <= 20; ++s.seed) {
         EXPECT_FALSE(fly_in_process(s).below_floor) << "seed " << s.seed;
     }
 }

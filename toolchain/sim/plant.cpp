@@ -75,11 +75,12 @@ void Plant::take_notes()
 bool Plant::is_below_floor() const
 {
     constexpr double kFollowing = 0.5;
+    const auto above = [&](const Vec& place) { return autopilot_.mission().height_abeam(place) - place.z(); };
     const Vec& position = world_.own().position;
-    const double leg = autopilot_.mission().height_abeam(position);
     // As its autopilot believes: an own position that is wrong is no descent of jink's.
-    const bool follows = autopilot_.mode() == Mode::mission && leg - autopilot_.believed_position().z() <= kFollowing;
-    return scenario_.floor && position.z() < *scenario_.floor && leg >= *scenario_.floor && !follows;
+    const bool follows = autopilot_.mode() == Mode::mission && above(autopilot_.believed_position()) <= kFollowing;
+    return scenario_.floor && position.z() < *scenario_.floor && position.z() + above(position) >= *scenario_.floor &&
+           !follows;
 }
 
 void Plant::step()
