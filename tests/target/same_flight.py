@@ -8,14 +8,12 @@ write identical bytes. On images, which have another C library, every state, fau
 count must be equal in every step; commands and margins may differ by rounding (TOLERANCE), and the largest difference
 is printed.
 
-A board without memory for the large reach sets flies without reach sets here, and is compared with the host program
-without reach sets; same_choice.py compares plans by the reduced sets. Flights without an input on images (fly.py) are
-excluded.
+Each board is compared with a flight of its work and its reach sets (RUNS). Flights without an input on images (fly.py)
+are excluded.
 
 If two candidates' costs are equal within TIE, as left and right of a wall straight ahead, rounding may decide. Such a
 choice is counted, and the flight is not compared further on that target, since later steps follow the other choice.
 """
-import dataclasses
 import pathlib
 import subprocess
 import sys
@@ -28,9 +26,9 @@ import targets  # noqa: E402
 
 TOLERANCE = 1e-3  # [m/s], [m]
 TIE = 1e-4  # of costs, as for same_choice.py
-WITHOUT_REACH_SETS = ("stm32f405",)
 SAME_BYTES = ("armhf", "aarch64")
-CLOCK = 168  # of the slowest board [MHz]: a step does as much work on every target, and plans go on over several steps
+# Options of the flights, and who is compared there. Plans go on over several steps: as many as the board's clock [MHz] makes.
+RUNS = ((["--clock", "168"], ("armhf", "aarch64")), (["--clock", "216"], ("mps2_an500",)), (["--clock", "168", "--reduced-sets"], ("stm32f405",)))
 FOUND = targets.STATUS.index("found")
 
 
@@ -64,22 +62,18 @@ class Comparison:
             self.differing.append(f"{where} on {self.name}: other bytes")
 
 
-def record(sim, folder):
+def record(sim, options, folder):
     files = sorted(str(f) for f in pathlib.Path(__file__).resolve().parents[1].joinpath("scenario").glob("*.yaml")
                    if not NO_INPUT.search(f.read_text(encoding="utf-8")))
-    subprocess.run([sim, "fly", *files, "--clock", str(CLOCK), "--record-steps", folder, "--quiet"], check=True)
+    subprocess.run([sim, "fly", *files, *options, "--record-steps", folder, "--quiet"], check=True)
     return {path.stem: flights.read(path) for path in sorted(pathlib.Path(folder).glob("*.steps"))}
 
 
-def main(sim, build, names):
-    missing = [name for name in names if not targets.is_there(name, build, flights.StepProbe)]
-    if missing:
-        print(f"not built: {', '.join(missing)}: skipped")
-        return 77
+def compare(sim, build, names, options):
+    """What differs in flights with these options, in words."""
     with tempfile.TemporaryDirectory() as folder:
-        recorded = record(sim, folder)
+        recorded = record(sim, options, folder)
     probes = [targets.open_probe(name, build, kind=flights.StepProbe) for name in names]
-    bare = targets.open_probe(names[0], build, kind=flights.StepProbe)  # without reach sets
     others = [Comparison(probe.name) for probe in probes[1:]]
     steps = plans = manoeuvres = 0
     faults = []
@@ -87,19 +81,17 @@ def main(sim, build, names):
         reference = None
         for i, step in enumerate(flight):
             where = f"{name}, step {i}"
-            plain = dataclasses.replace(step, start=step.start & -flights.CLOCK | flights.WITHOUT_REACH_SETS if step.start else 0)
-            reference, *answers = [probe.ask(plain if probe.name in WITHOUT_REACH_SETS else step) for probe in probes]
-            without = bare.ask(plain)
+            reference, *answers = [probe.ask(step) for probe in probes]
             if reference.bytes_out != step.bytes_out:
                 faults.append(f"{where}: {probes[0].name} does not write what it wrote in the flight")
             for comparison, answer in zip(others, answers):
-                comparison.add(name, where, answer, without if comparison.name in WITHOUT_REACH_SETS else reference)
+                comparison.add(name, where, answer, reference)
         steps += len(flight)
         plans += reference.plans
         manoeuvres += reference.manoeuvres
-    for probe in [*probes, bare]:
+    for probe in probes:
         probe.close()
-    print(f"{len(recorded)} flights, {steps} steps, {plans} plans, {manoeuvres} manoeuvres")
+    print(f"{' '.join(options)}: {len(recorded)} flights, {steps} steps, {plans} plans, {manoeuvres} manoeuvres")
     for c in others:
         print(f"{c.name}: {c.steps} steps compared, {len(c.differing)} decided otherwise; {len(c.ties)} flights left at a tie; largest difference of a command {c.velocity:.3g} m/s, "
               f"of a margin {c.margin:.3g} m; {c.same_bytes} steps wrote the same bytes")
@@ -108,9 +100,21 @@ def main(sim, build, names):
         faults += c.differing
         if max(c.velocity, c.margin) > TOLERANCE:
             faults.append(f"{c.name}: differs by more than {TOLERANCE:g}")
-    print("\n".join(faults[:20]))
     if plans == 0 or manoeuvres == 0:
         faults.append("nothing was decided in any flight")
+    return faults
+
+
+def main(sim, build, names):
+    missing = [name for name in names if not targets.is_there(name, build, flights.StepProbe)]
+    if missing:
+        print(f"not built: {', '.join(missing)}: skipped")
+        return 77
+    faults = []
+    for options, there in RUNS:
+        others = [name for name in names[1:] if name in there]
+        faults += compare(sim, build, names[:1] + others, options) if others else []
+    print("\n".join(faults[:20]))
     return 1 if faults else 0
 
 

@@ -10,6 +10,7 @@
 #include "firmware/app/coprocessor.hpp"
 #include "firmware/app/work_rate.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
+#include "firmware/vehicles/default/reach_sets_reduced.hpp"
 #include "tests/target/plan_bytes.hpp"
 #include "tests/target/probe_io.hpp"
 #include "tests/target/window.hpp"
@@ -66,17 +67,24 @@ public:
     void feed() noexcept override {}
 };
 
+/// A board that has the reduced sets alone has them anyway.
+app::Parameters parameters_of(std::uint32_t start) noexcept
+{
+    app::Parameters parameters;
+    if (start % sim::kStepClock == sim::kStartsWithReducedSets) {
+        parameters.use(reach::kDefaultReducedSets);
+    }
+    return parameters;
+}
+
 /// Everything that a start creates.
 struct Device {
     Device(hal::SerialPort& port, std::uint32_t start) noexcept
-        : coprocessor(endpoint, port, watchdog, app::Parameters())
+        : coprocessor(endpoint, port, watchdog, parameters_of(start))
     {
         if (const unsigned clock = start / sim::kStepClock; clock >= app::WorkRate::kMinMegahertz) {
             static_cast<void>(
                 coprocessor.plan_in_slices(fresh_plan_memory().plan, app::WorkRate::of_megahertz(clock).work()));
-        }
-        if (start % sim::kStepClock == sim::kStartsWithoutReachSets) {
-            coprocessor.leave_out_reach_sets();
         }
     }
 

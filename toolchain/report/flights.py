@@ -6,7 +6,6 @@ import struct
 import targets
 
 MAGIC = 0x4A535201
-WITHOUT_REACH_SETS, CLOCK = 2, 0x10000
 RECORD = struct.Struct("<IIqII")
 ANSWER = struct.Struct("<16I5f")
 DISCRETE = ("state", "faults", "control", "guidance", "kind", "plan_status", "plans", "chosen", "candidates", "manoeuvres",
@@ -17,7 +16,7 @@ DISCRETE = ("state", "faults", "control", "guidance", "kind", "plan_status", "pl
 class Step:
     """toolchain/sim/step_record.hpp"""
 
-    start: int  # 0, or 1, or 2 for a start without reach sets; and CLOCK times the clock [MHz], if any
+    start: int  # 0, or 1, or 2 for a start with the reduced reach sets; and 0x10000 times the clock [MHz], if any
     now_us: int
     bytes_in: bytes
     bytes_out: bytes  # in the recorded flight

@@ -22,8 +22,9 @@ constexpr std::int64_t kClockStart = 1'234'567'890;
 /// Records the bytes that each step reads and writes on a line.
 class Tap final : public hal::SerialPort {
 public:
-    Tap(hal::SerialPort& line, std::ostream* steps, unsigned clock)
-        : line_(line), steps_(steps), start_(kStartsAnew | clock * kStepClock)
+    Tap(hal::SerialPort& line, std::ostream* steps, const Board& board)
+        : line_(line), steps_(steps),
+          start_((board.reduced_sets ? kStartsWithReducedSets : kStartsAnew) + board.clock * kStepClock)
     {
     }
 
@@ -119,7 +120,7 @@ Record fly_in_process(const Scenario& given, const Timing& timing, std::ostream*
     hal::ManualClock clock(kClockStart);
     hal::CountingWatchdog watchdog;
     const auto cable = std::make_unique<Cable>(clock, scenario.seed, timing);
-    Tap tap(cable->port(), steps, scenario.board.clock);
+    Tap tap(cable->port(), steps, scenario.board);
     const std::unique_ptr<Lidar> lidar = lidar_of(scenario);
     Bench bench(tap, watchdog,
                 {.planner = scenario.planner,
@@ -140,7 +141,7 @@ Record fly_through_tunnel(const Scenario& scenario)
     hal::ManualClock clock(kClockStart);
     hal::CountingWatchdog watchdog;
     const auto line = std::make_unique<TunnelLine>(clock, scenario.seed);
-    Tap tap(line->bus().serial(), nullptr, scenario.board.clock);
+    Tap tap(line->bus().serial(), nullptr, scenario.board);
     const std::unique_ptr<Lidar> lidar = lidar_of(scenario);
     Bench bench(tap, watchdog,
                 {.planner = scenario.planner,

@@ -16,12 +16,12 @@ inline constexpr std::uint32_t kStepMagic = 0x4A535201;  // "JSR", layout 1
 inline constexpr std::uint32_t kStepBytes = 4096;
 
 inline constexpr std::uint32_t kStartsAnew = 1;
-inline constexpr std::uint32_t kStartsWithoutReachSets = 2;
+inline constexpr std::uint32_t kStartsWithReducedSets = 2;
 inline constexpr std::uint32_t kStepClock = 0x10000;
 
 struct StepRecord {
     std::uint32_t magic;
-    /// Not 0: the co-processor starts anew before this step; the sum of kStartsAnew or kStartsWithoutReachSets, and its
+    /// Not 0: the co-processor starts anew before this step; the sum of kStartsAnew or kStartsWithReducedSets, and its
     /// clock (Board::clock) times kStepClock.
     std::uint32_t start;
     std::int64_t now_us;      ///< the step's time
