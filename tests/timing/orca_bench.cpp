@@ -35,7 +35,7 @@ constexpr std::array<Rival, 6> kSphere{
     {{10, 0.44, 3.00}, {20, 0.69, 3.00}, {50, 1.00, 2.97}, {100, 1.15, 2.96}, {500, 2.8, 2.79}, {812, 3.7, 2.81}}};
 constexpr Rival kDense{100, 17.0, 0.0};  // 15 - 19 us
 constexpr int kRuns = 3;
-constexpr int kMostRuns = 25;
+constexpr int kMaxRuns = 25;
 constexpr double kEnough = 3.0;  // [s] for both, after which kRuns are enough
 constexpr long kMaxSteps = 8000;
 
@@ -75,7 +75,7 @@ Both fly_in_turns(std::size_t count, const SwarmSettings& settings)
 {
     Both both;
     const double start = processor_time();
-    for (int k = 0; k < kRuns || (k < kMostRuns && processor_time() - start < kEnough); ++k) {
+    for (int k = 0; k < kRuns || (k < kMaxRuns && processor_time() - start < kEnough); ++k) {
         run<Swarm>(count, settings, both.core);
         run<PublishedSwarm>(count, settings, both.published);
     }
