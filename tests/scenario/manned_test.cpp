@@ -221,6 +221,13 @@ TEST(Manned, RatiosAreWeightedAndZeroIsNotCertain)
     EXPECT_NEAR(sum.well_clear.value, 50.0 / 110.0, 1e-12);
     EXPECT_LT(sum.well_clear.low, sum.well_clear.value);
     EXPECT_GT(sum.well_clear.high, sum.well_clear.value);
+    // One event of hardly any weight: samples of it alone would leave next to nothing.
+    results[3].weight = 1e-6;
+    results[3].near = true;
+    const MannedSummary one = summary_of(results);
+    EXPECT_LT(one.near_mid_air.value, 1e-6);
+    EXPECT_GT(one.near_mid_air.high, 0.05) << "one of a hundred, 95 %";
+    EXPECT_LT(one.near_mid_air.high, 0.06);
 }
 
 TEST(Manned, NearMidAirCollisionsAreAvoidedWhereTheyCanBe)

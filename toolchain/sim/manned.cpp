@@ -144,8 +144,9 @@ Ratio ratio_of(const std::vector<MannedResult>& results, Event&& event, Base&& b
     Ratio out;
     const auto events = static_cast<std::size_t>(std::count_if(results.begin(), results.end(), event));
     const auto bases = static_cast<std::size_t>(std::count_if(results.begin(), results.end(), base));
+    const double plain = std::min(1.0, share_of(std::min(events, bases), bases).high);
     if (events == 0) {
-        out.high = bases > 0 ? std::min(1.0, 3.0 / static_cast<double>(bases)) : 1.0;
+        out.high = plain;
         return out;
     }
     out.value = counted([](std::size_t i) { return i; });
@@ -163,7 +164,9 @@ Ratio ratio_of(const std::vector<MannedResult>& results, Event&& event, Base&& b
     }
     std::sort(ratios.begin(), ratios.end());
     out.low = quantile(ratios, 0.025);
-    out.high = quantile(ratios, 0.975);
+    // Samples of a few events, of little weight as it may be, say nothing of those that have not been met yet.
+    constexpr std::size_t kFew = 10;
+    out.high = events < kFew ? std::max(quantile(ratios, 0.975), plain) : quantile(ratios, 0.975);
     return out;
 }
 

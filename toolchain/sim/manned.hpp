@@ -63,8 +63,8 @@ struct MannedResult {
 [[nodiscard]] MannedResult fly_manned(const EncounterModel& model, MannedSensor sensor, std::uint64_t seed,
                                       const std::map<std::string, double>& parameters, const Board& board);
 
-/// A ratio of weighted frequencies, with its 95 % interval by 1000 bootstrap samples within the strata (seeded). Where
-/// nothing happened its upper limit is 3 by the number of the events that it is a ratio to (rule of three).
+/// A ratio of weighted frequencies, with its 95 % interval by 1000 bootstrap samples within the strata (seeded). Of
+/// fewer than ten events the upper limit is at least that of the plain share of those that it is a ratio to (share_of).
 struct Ratio {
     double value = 0.0;
     double low = 0.0;
