@@ -110,7 +110,7 @@ def main(sim, build, names):
     if missing:
         print(f"not built: {', '.join(missing)}: skipped")
         return 77
-    faults = []
+    faults = [f"{name}: nothing says what it is compared with" for name in names[1:] if not any(name in there for _, there in RUNS)]
     for options, there in RUNS:
         others = [name for name in names[1:] if name in there]
         faults += compare(sim, build, names[:1] + others, options) if others else []
