@@ -8,6 +8,7 @@ namespace {
 
 /// Ticks longer than this are stalls, in which nobody knows what was flown [s].
 constexpr Seconds kLongestTick = 0.1F;
+constexpr float kTiny = 1e-3F;
 
 bool is_followed(const Vec3& command, const Vec3& velocity) noexcept
 {
@@ -53,6 +54,7 @@ bool FollowCheck::update(const Vec3& asked, const Vec3& velocity, const vehicle:
         start_ = velocity;
         return false;
     }
+    const bool is_first = commanded_ == 0.0F;
     commanded_ += dt;
     const float expected = std::min(kExpected * limits.max_acceleration, kMaxExpected);
     const Vec3 error = command - (velocity - change);
@@ -64,15 +66,15 @@ bool FollowCheck::update(const Vec3& asked, const Vec3& velocity, const vehicle:
         reference_ = command;
     }
     is_proven_ = is_proven_ || (command - start_).norm() - (command - velocity).norm() >= kTolerance;
-    const float answered = change.dot(error) / std::max(error.norm(), 1e-3F);
+    const bool followed = is_followed(command, velocity);
+    const Vec3 direction = followed ? Vec3(Vec3::Zero()) : Vec3(error / std::max(error.norm(), kTiny));
+    answer_ = is_first ? direction : Vec3(answer_ + dt / (kAnswer + dt) * (direction - answer_));
+    const float answered = change.dot(answer_);
     const float towards = wing ? std::max(answered, 0.0F) : answered;  // rolling out of a turn goes the wrong way
-    if (is_followed(command, velocity)) {
-        missing_ = std::max(missing_ - expected * dt, std::min(missing_, 0.0F));
-        return false;
-    }
-    missing_ = std::max(missing_ + expected * dt - towards, std::min(missing_, 0.0F));
+    const float due = followed ? -expected * dt : expected * answer_.squaredNorm() * dt - towards;
+    missing_ = std::max(missing_ + due, std::min(missing_, 0.0F));
     const Seconds patience = wing ? kWingPatience : kPatience;
-    return missing_ >= expected * patience && commanded_ >= patience;
+    return !followed && missing_ >= expected * patience && commanded_ >= patience;
 }
 
 }  // namespace jink::app
