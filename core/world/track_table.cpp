@@ -24,6 +24,9 @@ constexpr float kNewcomer = 1.5F;
 constexpr float kNewcomerInFlood = 2.0F;
 constexpr float kOwnSensor = 0.5F;
 constexpr Seconds kFloodWindow = 1.0F;
+/// A change of velocity is measured over this long, and counts beyond so many standard deviations.
+constexpr Seconds kShownOver = 0.5F;
+constexpr float kShownBeyond = 4.5F;
 /// An aircraft that moved by more is not at the same place to 0.01 m, as links say it [m].
 constexpr float kMoved = 0.05F;
 
@@ -123,6 +126,8 @@ TrackTable::Entry TrackTable::start(const TrackMeasurement& m) const noexcept
                    0,
                    m.manned,
                    m.half_height};
+    entry.velocity_then = entry.track.velocity;
+    entry.then = m.has_velocity ? m.stamp : TimePoint{};
     entry.said = fingerprint(m);
     return entry;
 }
@@ -134,8 +139,37 @@ void TrackTable::move(const Vec3& by) noexcept
     }
 }
 
+void TrackTable::note_acceleration(Entry& e, const TrackMeasurement& m) const noexcept
+{
+    const Seconds span = m.stamp - e.then;
+    if (!m.cooperative || !m.has_velocity || span < kShownOver) {
+        return;
+    }
+    if (e.then != TimePoint{}) {
+        const Vec3 change = m.velocity - e.velocity_then;
+        const float noise = kShownBeyond * m.sigma_velocity;
+        const auto shown = [&](float before, float by) noexcept {
+            return std::max(before, std::min((by - noise) / span, settings_.reach_acceleration));
+        };
+        e.track.shown_level = shown(e.track.shown_level, change.head<2>().norm());
+        e.track.shown_vertical = shown(e.track.shown_vertical, std::abs(change.z()));
+    }
+    e.velocity_then = m.velocity;
+    e.then = m.stamp;
+}
+
+bool TrackTable::any_accelerates_beyond(const vehicle::VehicleLimits& own) const noexcept
+{
+    return std::any_of(entries_.begin(), entries_.end(), [&](const Entry& e) noexcept {
+        return unheard_acceleration(own.max_acceleration, e.track.shown_level) > own.max_acceleration ||
+               unheard_acceleration(own.max_vertical_acceleration, e.track.shown_vertical) >
+                   own.max_vertical_acceleration;
+    });
+}
+
 void TrackTable::filter(Entry& e, const TrackMeasurement& m) noexcept
 {
+    note_acceleration(e, m);
     const Seconds dt = m.stamp - e.track.stamp;
     const float q = settings_.process_acceleration * settings_.process_acceleration;
     const Vec3 predicted = e.track.position + e.track.velocity * dt;
@@ -152,9 +186,13 @@ void TrackTable::filter(Entry& e, const TrackMeasurement& m) noexcept
     if (innovation.squaredNorm() > gate2 * (ppp + r) || (m.has_velocity && turn.squaredNorm() > gate2 * (pvv + rv))) {
         // It did not do what the filter believes: the newest sighting is the truth.
         ++diagnostics_.jumps;
-        const std::uint8_t instance = e.track.instance;
+        const Entry before = e;
         e = start(m);
-        e.track.instance = instance;
+        e.track.instance = before.track.instance;
+        e.track.shown_level = before.track.shown_level;
+        e.track.shown_vertical = before.track.shown_vertical;
+        e.velocity_then = before.velocity_then;
+        e.then = before.then;
         return;
     }
     const float gain_p = ppp / (ppp + r);
@@ -177,10 +215,21 @@ void TrackTable::filter(Entry& e, const TrackMeasurement& m) noexcept
     e.variance_position = vpp;
     e.covariance = vpv;
     e.variance_velocity = vvv;
-    e.track = {m.id,         m.stamp,        position,         velocity,
-               m.radius,     std::sqrt(vpp), std::sqrt(vvv),   m.max_acceleration,
-               m.source,     m.cooperative,  e.track.instance, m.manned,
-               m.half_height};
+    e.track = {m.id,
+               m.stamp,
+               position,
+               velocity,
+               m.radius,
+               std::sqrt(vpp),
+               std::sqrt(vvv),
+               m.max_acceleration,
+               m.source,
+               m.cooperative,
+               e.track.instance,
+               m.manned,
+               m.half_height,
+               e.track.shown_level,
+               e.track.shown_vertical};
     e.said = fingerprint(m);
     e.sightings = static_cast<std::uint16_t>(std::min<unsigned>(e.sightings + 1U, 0xFFFFU));
 }

@@ -47,6 +47,9 @@ struct Track {
     std::uint8_t instance = 0;  ///< id and instance together are unique in a table
     bool manned = false;        ///< people aboard, as far as is reported: FlightRules::well_clear
     float half_height = 0.0F;   ///< uncertainty of the height, all of it, beside the sphere's growth [m]
+    // Of a cooperative one: the greatest accelerations that its reports have shown, 0 until they have shown any [m/s2].
+    float shown_level = 0.0F;
+    float shown_vertical = 0.0F;
 };
 
 struct Obstacle {
@@ -205,8 +208,15 @@ enum class PlanStatus : std::uint8_t {
     return situation.rules.k_sigma * situation.own.sigma_position;
 }
 
-/// What a vehicle that avoids us too may have done since its report and did not announce: it flies by the same rules,
-/// so it changes its velocity no faster than the own vehicle does. Zero for tracks that are not cooperative.
+/// Acceleration that a cooperative vehicle may have flown unheard: the own limit, since it flies by the same rules; or
+/// what it has shown, where that is more by a quarter and noise does not explain it [m/s2].
+[[nodiscard]] constexpr float unheard_acceleration(float own_limit, float shown) noexcept
+{
+    return shown > 1.25F * own_limit ? shown : own_limit;
+}
+
+/// What a vehicle that avoids us too may have done since its report and did not announce: it changes its velocity no
+/// faster than by unheard_acceleration. Zero for tracks that are not cooperative.
 struct Doubt {
     float position = 0.0F;  ///< its place may be off by so much [m]
     float velocity = 0.0F;  ///< and its velocity [m/s]

@@ -128,6 +128,10 @@ void Telemetry::report_causes(const Reported& of, Outbox& outbox) noexcept
         outbox.say(link::Severity::warning, "jink: too much traffic, some is left out");
         said_.flood = true;
     }
+    if (!said_.harder && heard && of.picture.track_table().any_accelerates_beyond(of.configuration.limits)) {
+        outbox.say(link::Severity::warning, "jink: neighbour accelerates beyond VEH_ACC");
+        said_.harder = true;
+    }
     if (of.picture.known_map().is_coarse() && !said_.coarse && heard) {
         outbox.say(link::Severity::warning, "jink: map too dense here, boxes close more");
         said_.coarse = true;

@@ -82,6 +82,7 @@ private:
         bool left_out = false;
         bool unsuited = false;
         bool flood = false;
+        bool harder = false;    ///< a neighbour accelerates harder than the own vehicle may
         bool coarse = false;    ///< boxes stand for pieces of the map
         bool advising = false;  ///< this vehicle cannot be steered
         bool alone = false;     ///< no autopilot

@@ -236,6 +236,55 @@ TEST(Swarm, OfTwoIsHeldBackSmoothly)
     }
 }
 
+/// A manoeuvre and a stop took turns several times a second: the set-points were followed, as well as that can be.
+TEST(Swarm, OfTwoThatGoAndStopIsNotAccused)
+{
+    SwarmSetup setup = two(15.0);
+    setup.delay = 1.0;
+    setup.both_stacks = true;
+    setup.parameters = {{"JNK_METHODS", 1.0}};
+    setup.others = {{"JNK_METHODS", 4.0}};
+    for (const std::uint64_t seed : {950041U, 950187U}) {
+        const SwarmResult result = fly_swarm(setup, seed, {});
+        EXPECT_TRUE(result.good()) << to_line(result);
+    }
+}
+
+/// Autopilots that accelerate twice as hard as VEH_ACC says, reports 1 s late and 60 % of them lost. Seeds in which two
+/// that cross touched as long as nobody measured how hard the other one accelerates.
+TEST(Swarm, OfTwoThatAccelerateHarderThanTheyShouldKeepsItsSeparations)
+{
+    SwarmSetup setup = two(15.0);
+    setup.sector = 90.0;
+    setup.delay = 1.0;
+    setup.loss = 0.6;
+    setup.acceleration = 4.0;
+    setup.parameters = {{"VEH_ACC", 2.0}, {"VEH_ACC_Z", 2.0}};
+    for (const std::uint64_t seed : {950009U, 950044U, 950063U, 950072U}) {
+        const SwarmResult result = fly_swarm(setup, seed, {});
+        EXPECT_EQ(result.collisions, 0U) << to_line(result);
+        EXPECT_GE(result.margin, 1.0) << to_line(result);
+    }
+}
+
+/// What a vehicle may have done unheard grows with its acceleration (docs/guides/common_stop.md). Eight whose goals are
+/// 3.1 m apart, with reports 1 s late, do not get there at 2 m/s2: neighbours may be anywhere within 3.6 m.
+TEST(Swarm, OfEightWithOldReportsArrivesAtASmallAcceleration)
+{
+    SwarmSetup setup;
+    setup.vehicles = 8;
+    setup.circle = 4.0;
+    setup.cruise = 6.0;
+    setup.delay = 1.0;
+    setup.acceleration = 1.0;
+    setup.duration = 100.0;
+    for (const std::uint64_t seed : {1U, 2U}) {
+        const SwarmResult result = fly_swarm(setup, seed, {});
+        EXPECT_TRUE(result.good()) << to_line(result);
+        EXPECT_GE(result.margin, 1.0) << to_line(result);
+    }
+}
+
 /// Two head-on and crossing that hear of each other late: seeds in which both once chose the same side.
 TEST(Swarm, OfTwoPassesOnItsSidesHoweverOldTheReports)
 {
@@ -388,6 +437,7 @@ TEST(Swarm, SummaryNamesTheWorst)
     a.distance = 0.9;
     a.margin = 1.2;
     a.time = 20.0;
+    a.jumps = 2;
     SwarmResult b = a;
     b.seed = 2;
     b.margin = 0.8;
@@ -404,7 +454,8 @@ TEST(Swarm, SummaryNamesTheWorst)
               std::string::npos);
     EXPECT_NE(text.find("least distance 0.400 m (seed 3), least margin 0.800 (seed 2), least to an obstacle 0.300 m"),
               std::string::npos);
-    EXPECT_NE(text.find("longest stall 3.00 s (seed 2), time median 20.00 s, most 60.00 s"), std::string::npos);
+    EXPECT_NE(text.find("longest stall 3.00 s (seed 2), time median 20.00 s, most 60.00 s, 6 jumps of the command"),
+              std::string::npos);
 }
 
 }  // namespace

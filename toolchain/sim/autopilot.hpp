@@ -49,6 +49,7 @@ struct Heard {
     unsigned bad_setpoints = 0;        ///< mask, frame, target or values that an autopilot refuses
     unsigned setpoints_overruled = 0;  ///< sent more than 0.2 s after another sender chose a mode
     Micros longest_setpoint_gap = 0;   ///< while in external mode
+    unsigned jumps = 0;                ///< of the velocity that is flown, by more than half the cruise speed at once
     unsigned warnings = 0;             ///< COLLISION
     Micros first_warning = -1;         ///< of them [us]
     Micros last_warning = -1;          ///< [us]

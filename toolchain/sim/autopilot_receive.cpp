@@ -111,6 +111,8 @@ void Autopilot::hear_setpoint(const SetPositionTargetLocalNed& target)
     last_setpoint_ = world_.now();
     if (mode_ == Mode::external) {
         last_followed_ = world_.now();
+        const bool jumps = has_external_setpoint_ && (velocity - setpoint_).norm() > 0.5 * scenario_.vehicle.cruise;
+        heard_.jumps += jumps ? 1U : 0U;
         has_external_setpoint_ = true;
         setpoint_ = velocity;
     } else if (mode_ != Mode::mission && !last_change_was_asked_ && world_.now() - mode_since_ > kGrace) {

@@ -197,6 +197,7 @@ SwarmResult Swarm::result() const
         const Heard& heard = plants_[i]->autopilot().heard();
         result.arrived += arrived_[i] >= 0 ? 1U : 0U;
         result.takeovers += plants_[i]->autopilot().takeovers();
+        result.jumps += heard.jumps;
         if (heard.heartbeats == 0) {
             fault(i, "the co-processor was never heard");
         }

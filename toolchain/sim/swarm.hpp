@@ -18,23 +18,24 @@ namespace jink::sim {
 /// Vehicles on a circle, each with its own co-processor, that exchange places with the opposite vehicle (Alejo 7.3.4),
 /// and moving obstacles.
 struct SwarmSetup {
-    unsigned vehicles = 20;   ///< 2 to 64
-    double circle = 10.0;     ///< its radius [m]
-    double sector = 360.0;    ///< of the circle on which the vehicles start, evenly spread [deg]
-    double tilt = 0.0;        ///< of the circle's plane: at 90 the first vehicle starts above the others [deg]
-    double height = 20.0;     ///< of the circle's lowest point above home [m]
-    double cruise = 1.0;      ///< [m/s]
-    double slow = 1.0;        ///< share of it that every second vehicle flies at
-    double spread = 0.1;      ///< largest start offset from the vehicle's place, per axis [m]
-    bool back = false;        ///< the vehicles return to their starts
-    unsigned obstacles = 0;   ///< spheres that fly straight through the circle, slower than the vehicles
-    double body = 0.25;       ///< radius of vehicles and obstacles [m]
-    double level = 0.7;       ///< required level separation of two vehicles' centres, or
-    double vertical = 0.5;    ///< required vertical separation instead [m]
-    double rate = 10.0;       ///< of broadcasts [Hz]
-    double loss = 0.0;        ///< lost share of broadcasts and obstacle reports
-    double delay = 0.0;       ///< delay of broadcasts and obstacle reports [s]
-    double duration = 180.0;  ///< at most [s]
+    unsigned vehicles = 20;     ///< 2 to 64
+    double circle = 10.0;       ///< its radius [m]
+    double sector = 360.0;      ///< of the circle on which the vehicles start, evenly spread [deg]
+    double tilt = 0.0;          ///< of the circle's plane: at 90 the first vehicle starts above the others [deg]
+    double height = 20.0;       ///< of the circle's lowest point above home [m]
+    double cruise = 1.0;        ///< [m/s]
+    double acceleration = 2.0;  ///< of the vehicles, at most, to every side [m/s2]
+    double slow = 1.0;          ///< share of it that every second vehicle flies at
+    double spread = 0.1;        ///< largest start offset from the vehicle's place, per axis [m]
+    bool back = false;          ///< the vehicles return to their starts
+    unsigned obstacles = 0;     ///< spheres that fly straight through the circle, slower than the vehicles
+    double body = 0.25;         ///< radius of vehicles and obstacles [m]
+    double level = 0.7;         ///< required level separation of two vehicles' centres, or
+    double vertical = 0.5;      ///< required vertical separation instead [m]
+    double rate = 10.0;         ///< of broadcasts [Hz]
+    double loss = 0.0;          ///< lost share of broadcasts and obstacle reports
+    double delay = 0.0;         ///< delay of broadcasts and obstacle reports [s]
+    double duration = 180.0;    ///< at most [s]
     Board board;
     Stack stack = Stack::ardupilot;
     bool both_stacks = false;                  ///< every second autopilot is a PX4 in place of `stack`
@@ -63,6 +64,7 @@ struct SwarmResult {
     double time = 0.0;   ///< time of the last arrival, or of the end [s]
     double stall = 0.0;  ///< longest stall of a vehicle en route, slower than a tenth of its cruise speed [s]
     unsigned takeovers = 0;
+    unsigned jumps = 0;               ///< of the velocities that are flown, as in Heard
     std::uint64_t digest = 0;         ///< over all positions every 0.1 s: equal for equal flights
     std::vector<std::string> faults;  ///< broken rules of the protocol
 

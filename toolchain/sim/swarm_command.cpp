@@ -95,6 +95,8 @@ CLI::App& add_swarm(CLI::App& cli, SwarmOptions& options)
         ->check(finite(0.1, 1.0));
     command->add_option("--others", options.others, "NAME=VALUE of every second co-processor, any number of them");
     command->add_option("--cruise", s.cruise, "cruise speed, default 1 [m/s]")->check(finite(0.5, 20.0));
+    command->add_option("--acceleration", s.acceleration, "of the vehicles, at most, default 2 [m/s2]")
+        ->check(finite(0.2, 20.0));
     command->add_option("--spread", s.spread, "of the starting places, default 0.1 [m]")->check(finite(0.0, 1.0));
     command->add_flag("--back", s.back, "and back again");
     command->add_option("--obstacles", s.obstacles, "that move, default 0")->check(whole(0, 62));
@@ -125,7 +127,7 @@ std::string to_line(const SwarmResult& r)
     out << "seed " << r.seed << ": distance " << metres(r.distance) << ", margin " << std::fixed << std::setprecision(3)
         << r.margin << ", obstacle " << metres(r.obstacle) << ", " << r.arrived << " of " << r.vehicles
         << " there after " << std::setprecision(2) << r.time << " s, stall " << r.stall << " s, " << r.collisions
-        << " collisions, " << r.takeovers << " take-overs, digest " << std::hex << std::setw(16) << std::setfill('0')
+        << " collisions, " << r.takeovers << " take-overs, " << r.jumps << " jumps, digest " << std::hex << std::setw(16) << std::setfill('0')
         << r.digest;
     for (const std::string& fault : r.faults) {
         out << "; " << fault;
@@ -142,8 +144,10 @@ std::string summarise(const std::vector<SwarmResult>& results)
         return std::count_if(results.begin(), results.end(), is);
     };
     std::vector<double> times;
+    unsigned jumps = 0;
     for (const SwarmResult& r : results) {
         times.push_back(r.time);
+        jumps += r.jumps;
     }
     std::sort(times.begin(), times.end());
     const SwarmResult distance = worst([](const auto& a, const auto& b) { return a.distance < b.distance; });
@@ -160,7 +164,8 @@ std::string summarise(const std::vector<SwarmResult>& results)
         << margin.margin << " (seed " << margin.seed << "), least to an obstacle " << metres(obstacle.obstacle)
         << " (seed " << obstacle.seed << ")\n"
         << std::setprecision(2) << "longest stall " << stall.stall << " s (seed " << stall.seed << "), time median "
-        << times[times.size() / 2] << " s, most " << times.back() << " s\n";
+        << times[times.size() / 2] << " s, most " << times.back() << " s, "
+        << jumps << " jumps of the command\n";
     return out.str();
 }
 

@@ -53,11 +53,11 @@ double cruise_of(const SwarmSetup& setup, unsigned index)
     return index % 2 == 0 ? setup.cruise : setup.slow * setup.cruise;
 }
 
-void small_and_slow(Scenario& s, double cruise)
+void small_and_slow(Scenario& s, double cruise, double acceleration)
 {
     s.vehicle.cruise = cruise;
     s.vehicle.max_climb = s.vehicle.max_descent = cruise;
-    s.vehicle.max_acceleration = s.vehicle.max_vertical_acceleration = 2.0;
+    s.vehicle.max_acceleration = s.vehicle.max_vertical_acceleration = acceleration;
 }
 
 }  // namespace
@@ -82,7 +82,7 @@ Scenario swarm_scenario(const SwarmSetup& setup, std::uint64_t seed, unsigned in
     s.to_goal = true;
     s.body_radius = setup.body;
     s.promise = setup.body;
-    small_and_slow(s, cruise_of(setup, index));
+    small_and_slow(s, cruise_of(setup, index), setup.acceleration);
     Vec off = off_place();
     for (unsigned i = 0; i < index; ++i) {
         off = off_place();  // draws of the vehicles before this one
@@ -111,8 +111,8 @@ app::Parameters swarm_parameters(const SwarmSetup& setup, unsigned index)
         {"VEH_CRUISE", cruise},
         {"VEH_CLIMB", cruise},
         {"VEH_DESCENT", cruise},
-        {"VEH_ACC", 2.0},
-        {"VEH_ACC_Z", 2.0},
+        {"VEH_ACC", setup.acceleration},
+        {"VEH_ACC_Z", setup.acceleration},
         // The other vehicle's sphere and the own box add up to the separations.
         {"TRK_RADIUS", half},
         {"JNK_HALF_XY", setup.level - half},

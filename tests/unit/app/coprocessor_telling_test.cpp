@@ -169,6 +169,25 @@ TEST(TellingNotices, WaitUntilAnAutopilotIsHeardAndAreSaidOnce)
     EXPECT_EQ(t->said(""), 2);
 }
 
+TEST(TellingNotices, ANeighbourThatAcceleratesHarderThanTheOwnVehicleMayIsSaidOnce)
+{
+    for (const float acceleration : {4.0F, 9.0F}) {  // VEH_ACC is 5
+        const auto t = teller();
+        t->fly(20);
+        t->put_ahead(300.0F);
+        t->traffic.back().source = world::TrackSource::datalink;
+        t->traffic.back().at_rest = false;
+        for (int i = 0; i < 150; ++i) {
+            link::TrackReport& r = t->traffic.back();
+            r.velocity = Vec3(0.0F, std::min(acceleration * 0.02F * static_cast<float>(i), 15.0F), 0.0F);
+            r.position += 0.02F * r.velocity;
+            r.stamp = t->now;
+            t->fly(1);
+        }
+        EXPECT_EQ(t->said("jink: neighbour accelerates beyond VEH_ACC"), acceleration > 5.0F ? 1 : 0) << acceleration;
+    }
+}
+
 TEST(TellingNotices, TooMuchTrafficIsSaidOnce)
 {
     const auto t = teller();

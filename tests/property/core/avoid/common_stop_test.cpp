@@ -253,6 +253,27 @@ TEST(CommonStop, SlowsDownByHowOldTheReportIs)
     EXPECT_EQ(before, 0.0F) << "two seconds hide 10 m";
 }
 
+TEST(CommonStop, KeepsClearOfWhatAVehicleHasShownThatItCan)
+{
+    const auto speed = [](float level, float vertical) {
+        Pair pair;
+        pair.own.velocity = {2, 0, 0};
+        pair.limits.max_acceleration = 2.0F;
+        pair.limits.max_vertical_acceleration = 1.0F;
+        world::Track& other = pair.other({8, 0, 0}, {0, 0, 0});
+        other.stamp = pair.now - 0.6F;
+        other.shown_level = level;
+        other.shown_vertical = vertical;
+        return pair.flown().x();
+    };
+    const float usual = speed(0.0F, 0.0F);
+    EXPECT_GT(usual, 1.0F);
+    EXPECT_EQ(speed(2.4F, 1.2F), usual) << "less than a quarter more is noise";
+    EXPECT_LT(speed(4.0F, 0.0F), usual);
+    EXPECT_LT(speed(8.0F, 0.0F), speed(4.0F, 0.0F));
+    EXPECT_LT(speed(0.0F, 4.0F), usual);
+}
+
 TEST(CommonStop, ComesUpAgainNoFasterThanItMay)
 {
     Pair far;
@@ -300,6 +321,33 @@ TEST(CommonStop, LeavesTheReachOfOneThatStandsTooNear)
     EXPECT_NEAR(flown.norm(), 0.3F, 1e-3F);
     pair.other({-2.1F, 0, 0}, Vec3::Zero());
     EXPECT_EQ(pair.flown(), Vec3(0, 0, 0)) << "shut in";
+}
+
+/// Nearer than this, of two that stand either one has to leave, or neither may move. docs/guides/common_stop.md.
+TEST(CommonStop, TwoThatStandNeedSpaceThatGrowsWithTheAccelerationAndTheSquareOfTheAge)
+{
+    for (const float acceleration : {0.5F, 1.0F, 2.0F, 4.0F}) {
+        for (const Seconds age : {0.1F, 0.5F, 1.0F, 1.5F}) {
+            const auto stands_clear = [&](float distance) {
+                Pair pair;
+                pair.own.velocity = Vec3::Zero();
+                pair.limits.cruise_speed = 20.0F;
+                pair.limits.max_acceleration = pair.limits.max_vertical_acceleration = acceleration;
+                pair.other({distance, 0, 0}, Vec3::Zero()).stamp = pair.now - age;
+                return pair.flown(Vec3::Zero()) == Vec3(0, 0, 0);
+            };
+            float low = 0.0F;
+            float high = 50.0F;
+            while (high - low > 1e-3F) {
+                const float middle = 0.5F * (low + high);
+                (stands_clear(middle) ? high : low) = middle;
+            }
+            const Pair pair;
+            const Seconds unheard = age + pair.rules.latency;
+            const float expected = pair.limits.half_extents.x() + 1.0F + acceleration * unheard * unheard;
+            EXPECT_NEAR(high, expected, 0.02F) << acceleration << " m/s2, " << age << " s";
+        }
+    }
 }
 
 TEST(CommonStop, IsNoReasonToStopInAnAircraftsWay)

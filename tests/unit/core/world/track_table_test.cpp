@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "core/base/random.hpp"
 #include "core/world/track_table.hpp"
 #include "tests/numbers.hpp"
 #include "tests/unit/core/world/scene.hpp"
@@ -229,6 +230,89 @@ TEST_F(TrackTables, ATurningIntruderIsFollowed)
     // Centripetal 3 m/s2 against a filter made for 0.5: it lags, by less than three sigmas of one sighting.
     EXPECT_LT(worst, 0.6F);
     EXPECT_EQ(table.size(), 1U);
+}
+
+/// A vehicle that reports every 0.1 s, its velocity by `velocity(seconds)`; the accelerations that it has shown at
+/// last.
+template <class Velocity>
+Track shown_by(TrackTable& table, Velocity velocity, float sigma, bool cooperative = true, int reports = 31)
+{
+    Vec3 place(50.0F, 0.0F, 30.0F);
+    TimePoint at = kTime;
+    for (int i = 0; i < reports; ++i) {
+        TrackMeasurement m = sighting(7, place, at);
+        m.velocity = velocity(0.1F * static_cast<float>(i));
+        m.sigma_velocity = sigma;
+        m.cooperative = cooperative;
+        static_cast<void>(table.update(m, {}, at));
+        place += 0.1F * m.velocity;
+        at = at + 0.1F;
+    }
+    return table.snapshot(at).front();
+}
+
+TEST_F(TrackTables, ACooperativeVehicleShowsHowHardItAccelerates)
+{
+    const auto gains = [](float t) { return Vec3(4.0F * t, 0.0F, -2.0F * t); };
+    const Track exact = shown_by(table, gains, 0.01F);
+    EXPECT_NEAR(exact.shown_level, 4.0F - 4.5F * 0.01F / 0.5F, 0.02F);
+    EXPECT_NEAR(exact.shown_vertical, 2.0F - 4.5F * 0.01F / 0.5F, 0.02F);
+    vehicle::VehicleLimits limits;
+    limits.max_acceleration = 4.0F;
+    limits.max_vertical_acceleration = 2.0F;
+    EXPECT_FALSE(table.any_accelerates_beyond(limits));
+    limits.max_vertical_acceleration = 1.5F;
+    EXPECT_TRUE(table.any_accelerates_beyond(limits));
+    limits.max_vertical_acceleration = 2.0F;
+    limits.max_acceleration = 3.0F;
+    EXPECT_TRUE(table.any_accelerates_beyond(limits));
+    TrackTable unsure;
+    EXPECT_NEAR(shown_by(unsure, gains, 0.3F).shown_level, 4.0F - 4.5F * 0.3F / 0.5F, 0.02F) << "what noise explains";
+    TrackTable others;
+    EXPECT_EQ(shown_by(others, gains, 0.01F, false).shown_level, 0.0F);
+}
+
+TEST_F(TrackTables, WhatAVehicleHasShownStaysAndIsNoMoreThanAnyCan)
+{
+    const auto bursts = [](float t) { return Vec3(t < 1.0F ? 6.0F * t : 6.0F, 0.0F, 0.0F); };
+    EXPECT_NEAR(shown_by(table, bursts, 0.01F, true, 100).shown_level, 6.0F, 0.1F);
+    TrackTable glitch;
+    const auto jumps = [](float t) { return Vec3(t < 1.05F ? 0.0F : 40.0F, 0.0F, 0.0F); };
+    EXPECT_EQ(shown_by(glitch, jumps, 0.01F).shown_level, TrackTableSettings{}.reach_acceleration);
+    TrackTable late;
+    const auto first = [](float) { return Vec3(20.0F, 0.0F, 0.0F); };
+    EXPECT_EQ(shown_by(late, first, 0.01F).shown_level, 0.0F) << "it came at that velocity";
+}
+
+TEST_F(TrackTables, NoiseOfAVelocityIsNoAcceleration)
+{
+    Random random(11);
+    int beyond = 0;
+    for (int i = 0; i < 200; ++i) {
+        TrackTable noisy;
+        const auto velocity = [&](float) {
+            return Vec3(5.0F + 0.3F * random.normal(), 0.3F * random.normal(), 0.3F * random.normal());
+        };
+        const Track track = shown_by(noisy, velocity, 0.3F, true, 101);
+        beyond += track.shown_level > 1.0F || track.shown_vertical > 1.0F ? 1 : 0;
+    }
+    EXPECT_LE(beyond, 2) << "of 200 in 10 s each by more than 1 m/s2";
+}
+
+TEST_F(TrackTables, AVelocityThatComesLaterIsNoAcceleration)
+{
+    TrackMeasurement m = sighting(7, Vec3(50.0F, 0.0F, 30.0F));
+    m.cooperative = true;
+    m.has_velocity = false;
+    static_cast<void>(table.update(m, own, kTime));
+    m.has_velocity = true;
+    m.velocity = Vec3(0.5F, 0.0F, 0.0F);
+    for (int i = 1; i <= 12; ++i) {
+        m.stamp = kTime + 0.1F * static_cast<float>(i);
+        m.position += 0.1F * m.velocity;
+        static_cast<void>(table.update(m, own, m.stamp));
+    }
+    EXPECT_EQ(table.snapshot(m.stamp).front().shown_level, 0.0F);
 }
 
 TEST_F(TrackTables, SnapshotExtrapolatesAndSortsById)
