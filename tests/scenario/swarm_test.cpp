@@ -204,7 +204,7 @@ TEST(Swarm, StandsStillWhereAVehicleIsNotHeardAnyMore)
     }
 }
 
-/// Two with the bodies and separations of docs/evidence/swarms.md, `cruise` in m/s.
+/// Two with the bodies and separations of docs/evidence/pairs.md, `cruise` in m/s.
 SwarmSetup two(double cruise)
 {
     SwarmSetup setup;
