@@ -114,6 +114,7 @@ TrackTable::Entry TrackTable::start(const TrackMeasurement& m) const noexcept
     const float sigma_velocity = m.has_velocity ? m.sigma_velocity : settings_.first_sigma_velocity;
     entry.variance_velocity = sigma_velocity * sigma_velocity;
     entry.track = {m.id,
+                   0.0F,
                    m.stamp,
                    m.position,
                    m.has_velocity ? m.velocity : Vec3(Vec3::Zero()),
@@ -127,7 +128,7 @@ TrackTable::Entry TrackTable::start(const TrackMeasurement& m) const noexcept
                    m.manned,
                    m.half_height};
     entry.velocity_then = entry.track.velocity;
-    entry.then = m.has_velocity ? m.stamp : TimePoint{};
+    entry.changing = m.has_velocity ? 0 : kUnchanged;
     entry.said = fingerprint(m);
     return entry;
 }
@@ -141,30 +142,29 @@ void TrackTable::move(const Vec3& by) noexcept
 
 void TrackTable::note_acceleration(Entry& e, const TrackMeasurement& m) const noexcept
 {
-    const Seconds span = m.stamp - e.then;
+    constexpr float kMostChanging = 60.0F;
+    if (e.changing == kUnchanged) {
+        e.velocity_then = m.velocity;
+        e.changing = m.has_velocity ? 0 : kUnchanged;
+        return;
+    }
+    const Seconds span = std::min(1e-3F * static_cast<float>(e.changing) + (m.stamp - e.track.stamp), kMostChanging);
+    e.changing = static_cast<std::uint16_t>(1e3F * span + 0.5F);
     if (!m.cooperative || !m.has_velocity || span < kShownOver) {
         return;
     }
-    if (e.then != TimePoint{}) {
-        const Vec3 change = m.velocity - e.velocity_then;
-        const float noise = kShownBeyond * m.sigma_velocity;
-        const auto shown = [&](float before, float by) noexcept {
-            return std::max(before, std::min((by - noise) / span, settings_.reach_acceleration));
-        };
-        e.track.shown_level = shown(e.track.shown_level, change.head<2>().norm());
-        e.track.shown_vertical = shown(e.track.shown_vertical, std::abs(change.z()));
-    }
+    const Vec3 change = m.velocity - e.velocity_then;
+    const float most = std::max(change.head<2>().norm(), std::abs(change.z()));
+    const float shown = std::min((most - kShownBeyond * m.sigma_velocity) / span, settings_.reach_acceleration);
+    e.track.shown_acceleration = std::max(e.track.shown_acceleration, shown);
     e.velocity_then = m.velocity;
-    e.then = m.stamp;
+    e.changing = 0;
 }
 
-bool TrackTable::any_accelerates_beyond(const vehicle::VehicleLimits& own) const noexcept
+bool TrackTable::any_accelerates_harder(const vehicle::VehicleLimits& own) const noexcept
 {
-    return std::any_of(entries_.begin(), entries_.end(), [&](const Entry& e) noexcept {
-        return unheard_acceleration(own.max_acceleration, e.track.shown_level) > own.max_acceleration ||
-               unheard_acceleration(own.max_vertical_acceleration, e.track.shown_vertical) >
-                   own.max_vertical_acceleration;
-    });
+    return std::any_of(entries_.begin(), entries_.end(),
+                       [&](const Entry& e) noexcept { return accelerates_harder(e.track, own); });
 }
 
 void TrackTable::filter(Entry& e, const TrackMeasurement& m) noexcept
@@ -189,10 +189,9 @@ void TrackTable::filter(Entry& e, const TrackMeasurement& m) noexcept
         const Entry before = e;
         e = start(m);
         e.track.instance = before.track.instance;
-        e.track.shown_level = before.track.shown_level;
-        e.track.shown_vertical = before.track.shown_vertical;
+        e.track.shown_acceleration = before.track.shown_acceleration;
         e.velocity_then = before.velocity_then;
-        e.then = before.then;
+        e.changing = before.changing;
         return;
     }
     const float gain_p = ppp / (ppp + r);
@@ -215,21 +214,9 @@ void TrackTable::filter(Entry& e, const TrackMeasurement& m) noexcept
     e.variance_position = vpp;
     e.covariance = vpv;
     e.variance_velocity = vvv;
-    e.track = {m.id,
-               m.stamp,
-               position,
-               velocity,
-               m.radius,
-               std::sqrt(vpp),
-               std::sqrt(vvv),
-               m.max_acceleration,
-               m.source,
-               m.cooperative,
-               e.track.instance,
-               m.manned,
-               m.half_height,
-               e.track.shown_level,
-               e.track.shown_vertical};
+    e.track = {
+        m.id,           e.track.shown_acceleration, m.stamp,  position,      velocity,         m.radius, std::sqrt(vpp),
+        std::sqrt(vvv), m.max_acceleration,         m.source, m.cooperative, e.track.instance, m.manned, m.half_height};
     e.said = fingerprint(m);
     e.sightings = static_cast<std::uint16_t>(std::min<unsigned>(e.sightings + 1U, 0xFFFFU));
 }

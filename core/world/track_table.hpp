@@ -82,11 +82,11 @@ struct TrackTableSettings {
 /// last sightings of the kMaxTracks tracks that aged out last are known still, so that a repetition starts none of them
 /// anew.
 ///
-/// A cooperative track's reported velocities show how hard it accelerates (Track::shown_level): their change over half
-/// a second or more, less 4.5 standard deviations of one, which noise exceeds in 0.6 % of cases at most; no more than
-/// `reach_acceleration`. What was shown once counts for as long as the track is kept.
+/// A cooperative track's reported velocities show how hard it accelerates (Track::shown_acceleration): their change
+/// over half a second or more, less 4.5 standard deviations of one, which noise exceeds in 0.6 % of cases at most; no
+/// more than `reach_acceleration`. What was shown once counts for as long as the track is kept.
 ///
-/// Memory: kMaxTracks * (2 * sizeof(Track) + 56) bytes. Nothing is dropped without a count.
+/// Memory: kMaxTracks * (2 * sizeof(Track) + 40) bytes. Nothing is dropped without a count.
 class TrackTable {
 public:
     explicit TrackTable(const TrackTableSettings& settings = {}) noexcept : settings_(settings) {}
@@ -104,9 +104,8 @@ public:
     /// Id of track `index` of the last snapshot.
     [[nodiscard]] TrackId id_in_snapshot(std::size_t index) const noexcept { return snapshot_[index].id; }
 
-    /// Whether a cooperative track has shown an acceleration that the own limits do not explain (unheard_acceleration).
-    /// O(kMaxTracks).
-    [[nodiscard]] bool any_accelerates_beyond(const vehicle::VehicleLimits& own) const noexcept;
+    /// Whether any track accelerates_harder. O(kMaxTracks).
+    [[nodiscard]] bool any_accelerates_harder(const vehicle::VehicleLimits& own) const noexcept;
 
     /// The frame's origin turned out to lie elsewhere, or was moved: every track goes by as much [m]. O(kMaxTracks).
     void move(const Vec3& by) noexcept;
@@ -127,15 +126,16 @@ private:
         std::uint32_t fingerprint = 0;  ///< of place and velocity
         TimePoint stamp;
     };
+    static constexpr std::uint16_t kUnchanged = 0xFFFF;  ///< of Entry::changing: no velocity was reported yet
     struct Entry {
         Track track;  ///< at its stamp
         float variance_position = 0.0F;
         float covariance = 0.0F;
         float variance_velocity = 0.0F;
-        std::uint16_t sightings = 1;        ///< saturates
-        Vec3 velocity_then = Vec3::Zero();  ///< reported `then`, at the beginning of the change that is measured
-        TimePoint then;                     ///< zero: none was reported yet
-        std::uint32_t said = 0;             ///< fingerprint of the last sighting's place and velocity
+        std::uint16_t sightings = 1;          ///< saturates
+        std::uint16_t changing = kUnchanged;  ///< since `velocity_then` was reported, saturates [ms]
+        std::uint32_t said = 0;               ///< fingerprint of the last sighting's place and velocity
+        Vec3 velocity_then = Vec3::Zero();    ///< at the beginning of the change that is measured
     };
     /// The tracks of one id, and which of them a sighting fits.
     struct Match {

@@ -34,7 +34,9 @@ enum class TrackSource : std::uint8_t {
 /// A moving threat: a sphere with a straight motion and its uncertainty. Where `half_height` is above 0 the height of
 /// its centre is uncertain by that much either way: the threat is an upright capsule.
 struct Track {
-    TrackId id = 0;                 ///< as reported; two aircraft under one id differ in `instance`
+    TrackId id = 0;  ///< as reported; two aircraft under one id differ in `instance`
+    /// The greatest that the reports of a cooperative one have shown, level or vertically; 0: none yet [m/s2].
+    float shown_acceleration = 0.0F;
     TimePoint stamp{};              ///< of the newest measurement in it
     Vec3 position = Vec3::Zero();   ///< [m]; in a Situation: at Situation::now
     Vec3 velocity = Vec3::Zero();   ///< [m/s]
@@ -47,9 +49,6 @@ struct Track {
     std::uint8_t instance = 0;  ///< id and instance together are unique in a table
     bool manned = false;        ///< people aboard, as far as is reported: FlightRules::well_clear
     float half_height = 0.0F;   ///< uncertainty of the height, all of it, beside the sphere's growth [m]
-    // Of a cooperative one: the greatest accelerations that its reports have shown, 0 until they have shown any [m/s2].
-    float shown_level = 0.0F;
-    float shown_vertical = 0.0F;
 };
 
 struct Obstacle {
@@ -208,11 +207,16 @@ enum class PlanStatus : std::uint8_t {
     return situation.rules.k_sigma * situation.own.sigma_position;
 }
 
-/// Acceleration that a cooperative vehicle may have flown unheard: the own limit, since it flies by the same rules; or
-/// what it has shown, where that is more by a quarter and noise does not explain it [m/s2].
-[[nodiscard]] constexpr float unheard_acceleration(float own_limit, float shown) noexcept
+/// Whether a cooperative vehicle accelerates harder than the own one may: by a quarter more than both limits.
+[[nodiscard]] inline bool accelerates_harder(const Track& track, const vehicle::VehicleLimits& own) noexcept
 {
-    return shown > 1.25F * own_limit ? shown : own_limit;
+    return track.shown_acceleration > 1.25F * std::max(own.max_acceleration, own.max_vertical_acceleration);
+}
+/// Level acceleration that a cooperative vehicle may have flown unheard: as hard as the own one may, since it flies by
+/// the same rules, or as hard as it has shown [m/s2].
+[[nodiscard]] inline float unheard_acceleration(const Track& track, const vehicle::VehicleLimits& own) noexcept
+{
+    return accelerates_harder(track, own) ? track.shown_acceleration : own.max_acceleration;
 }
 
 /// What a vehicle that avoids us too may have done since its report and did not announce: it changes its velocity no
