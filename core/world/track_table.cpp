@@ -107,7 +107,7 @@ TrackStatus TrackTable::admit(const TrackMeasurement& m, const vehicle::VehicleS
     return age > most_age(m.cooperative) ? TrackStatus::stale : TrackStatus::updated;
 }
 
-TrackTable::Entry TrackTable::start(const TrackMeasurement& m) const noexcept
+[[gnu::noinline]] TrackTable::Entry TrackTable::start(const TrackMeasurement& m) const noexcept
 {
     Entry entry;
     entry.variance_position = m.sigma_position * m.sigma_position;
@@ -140,7 +140,7 @@ void TrackTable::move(const Vec3& by) noexcept
     }
 }
 
-void TrackTable::note_acceleration(Entry& e, const TrackMeasurement& m) const noexcept
+[[gnu::cold, gnu::noinline]] void TrackTable::note_acceleration(Entry& e, const TrackMeasurement& m) const noexcept
 {
     constexpr float kMostChanging = 60.0F;
     if (e.changing == kUnchanged) {
@@ -161,7 +161,7 @@ void TrackTable::note_acceleration(Entry& e, const TrackMeasurement& m) const no
     e.changing = 0;
 }
 
-bool TrackTable::any_accelerates_harder(const vehicle::VehicleLimits& own) const noexcept
+[[gnu::cold, gnu::noinline]] bool TrackTable::any_accelerates_harder(const vehicle::VehicleLimits& own) const noexcept
 {
     return std::any_of(entries_.begin(), entries_.end(),
                        [&](const Entry& e) noexcept { return accelerates_harder(e.track, own); });
@@ -186,12 +186,12 @@ void TrackTable::filter(Entry& e, const TrackMeasurement& m) noexcept
     if (innovation.squaredNorm() > gate2 * (ppp + r) || (m.has_velocity && turn.squaredNorm() > gate2 * (pvv + rv))) {
         // It did not do what the filter believes: the newest sighting is the truth.
         ++diagnostics_.jumps;
-        const Entry before = e;
-        e = start(m);
-        e.track.instance = before.track.instance;
-        e.track.shown_acceleration = before.track.shown_acceleration;
-        e.velocity_then = before.velocity_then;
-        e.changing = before.changing;
+        Entry fresh = start(m);
+        fresh.track.instance = e.track.instance;
+        fresh.track.shown_acceleration = e.track.shown_acceleration;
+        fresh.velocity_then = e.velocity_then;
+        fresh.changing = e.changing;
+        e = fresh;
         return;
     }
     const float gain_p = ppp / (ppp + r);
