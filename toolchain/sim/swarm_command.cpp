@@ -127,8 +127,8 @@ std::string to_line(const SwarmResult& r)
     out << "seed " << r.seed << ": distance " << metres(r.distance) << ", margin " << std::fixed << std::setprecision(3)
         << r.margin << ", obstacle " << metres(r.obstacle) << ", " << r.arrived << " of " << r.vehicles
         << " there after " << std::setprecision(2) << r.time << " s, stall " << r.stall << " s, " << r.collisions
-        << " collisions, " << r.takeovers << " take-overs, " << r.jumps << " jumps, digest " << std::hex << std::setw(16) << std::setfill('0')
-        << r.digest;
+        << " collisions, " << r.takeovers << " take-overs, " << r.jumps << " jumps, digest " << std::hex
+        << std::setw(16) << std::setfill('0') << r.digest;
     for (const std::string& fault : r.faults) {
         out << "; " << fault;
     }
@@ -164,8 +164,7 @@ std::string summarise(const std::vector<SwarmResult>& results)
         << margin.margin << " (seed " << margin.seed << "), least to an obstacle " << metres(obstacle.obstacle)
         << " (seed " << obstacle.seed << ")\n"
         << std::setprecision(2) << "longest stall " << stall.stall << " s (seed " << stall.seed << "), time median "
-        << times[times.size() / 2] << " s, most " << times.back() << " s, "
-        << jumps << " jumps of the command\n";
+        << times[times.size() / 2] << " s, most " << times.back() << " s, " << jumps << " jumps of the command\n";
     return out.str();
 }
 
