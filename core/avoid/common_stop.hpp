@@ -17,9 +17,9 @@ namespace jink::avoid {
 /// The own vehicle flies a command for `ahead` and FlightRules::latency, and stops then. A track flies on for the
 /// latency, or for `ahead` as well, and stops then: both have to be clear. In the age of its report and the latency it
 /// may have changed its velocity by what the own vehicle could in that time, or by more where it has shown more
-/// (world::unheard_acceleration); it flies no faster than the own cruise
-/// speed, or than it was reported to. Level and vertical deceleration by themselves, k_sigma of places and velocities
-/// and the own loop's lag included; the lag of a track's loop is left to the safety box.
+/// (world::unheard_acceleration); it flies no faster than the own cruise speed, or than it was reported to. Level and
+/// vertical deceleration by themselves, k_sigma of places and velocities and the own loop's lag included; the lag of a
+/// track's loop is left to the safety box.
 ///
 /// Two vehicles that command no more than this never touch, as long as both are steered so, fly as the vehicle model
 /// says, and hear each other's reports: of their two newest commands the later one was found clear of all that the

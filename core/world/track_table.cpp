@@ -140,6 +140,7 @@ void TrackTable::move(const Vec3& by) noexcept
     }
 }
 
+/// Small in flash rather than fast: once a report.
 [[gnu::cold, gnu::noinline]] void TrackTable::note_acceleration(Entry& e, const TrackMeasurement& m) const noexcept
 {
     constexpr float kMostChanging = 60.0F;
