@@ -143,14 +143,14 @@ void TrackTable::move(const Vec3& by) noexcept
 /// Small in flash rather than fast: once a report.
 [[gnu::cold, gnu::noinline]] void TrackTable::note_acceleration(Entry& e, const TrackMeasurement& m) const noexcept
 {
-    constexpr float kMostChanging = 60.0F;
+    constexpr Seconds kMaxChanging = 60.0F;
     if (e.changing == kUnchanged) {
         e.velocity_then = m.velocity;
         e.changing = m.has_velocity ? 0 : kUnchanged;
         return;
     }
-    const Seconds span = std::min(1e-3F * static_cast<float>(e.changing) + (m.stamp - e.track.stamp), kMostChanging);
-    e.changing = static_cast<std::uint16_t>(1e3F * span + 0.5F);
+    const Seconds span = std::min(1e-3F * static_cast<float>(e.changing) + (m.stamp - e.track.stamp), kMaxChanging);
+    e.changing = static_cast<std::uint16_t>(std::lround(1e3F * span));
     if (!m.cooperative || !m.has_velocity || span < kShownOver) {
         return;
     }

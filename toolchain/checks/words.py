@@ -25,7 +25,6 @@ NAMES = {"ball": "sphere", "balls": "spheres", "barrel": "cylinder", "barrels": 
 PREFIXES = {"kMost": "kMax", "kLeast": "kMin"}
 # (files, word): why the word is right there.
 EXCUSED = {
-    ("core/world/track_table.cpp", "kMost"): "a name is part of what the figures were recorded with; kMax with the next change of this file",
     ("firmware/linux/read_ahead.hpp", "room"): "the name of a parameter: free space of a queue",
     ("tests/property/core/orca/published_rooms_test.cpp", "room"): "the buildings that Alejo draws",
     ("tests/property/core/orca/published_rooms_test.cpp", "rooms"): "the buildings that Alejo draws",
