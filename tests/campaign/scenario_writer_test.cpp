@@ -93,6 +93,7 @@ TEST(ScenarioWriter, KeepsEverythingThatAFileCanSay)
     EXPECT_EQ(read.body_radius, s.body_radius);
     EXPECT_EQ(read.floor, s.floor);
     EXPECT_EQ(read.vehicle.max_course_rate, s.vehicle.max_course_rate);
+    EXPECT_EQ(read.vehicle.drag, s.vehicle.drag);
     EXPECT_TRUE(read.mission == s.mission);
     EXPECT_TRUE(read.start_velocity == s.start_velocity);
     ASSERT_EQ(read.threats.size(), 2U);

@@ -47,7 +47,7 @@ duration: 12
 promise: 0.8
 body_radius: 0.4
 floor: 2.5
-vehicle: {cruise: 6, omega: 4, damping: 1, max_acceleration: 7, max_vertical_acceleration: 4, max_climb: 5, max_descent: 2, max_yaw_rate: 1, max_course_rate: 2}
+vehicle: {cruise: 6, omega: 4, damping: 1, max_acceleration: 7, max_vertical_acceleration: 4, max_climb: 5, max_descent: 2, max_yaw_rate: 1, max_course_rate: 2, drag: 0.5}
 mission: [[0, 0, 30], [100, 0, 30]]
 start: {position: [1, 2, 31], velocity: [3, 0, 0]}
 threats:
@@ -71,6 +71,7 @@ expect: {outcome: [avoided, braked], given_back: true, final_mode: hold, flips_a
     EXPECT_EQ(s.floor, 2.5);
     EXPECT_EQ(s.vehicle.cruise, 6.0);
     EXPECT_EQ(s.vehicle.max_course_rate, 2.0);
+    EXPECT_EQ(s.vehicle.drag, 0.5);
     EXPECT_EQ(s.start_position, Vec(1, 2, 31));
     EXPECT_EQ(s.start_velocity, Vec(3, 0, 0));
     ASSERT_EQ(s.threats.size(), 8U);

@@ -85,6 +85,36 @@ TEST(TruthVehicle, LimitsHoldUnderAnyCommands)
     }
 }
 
+/// The integrator has to let go of what it held: the way to a stop is drag x speed / integral gain, whatever the other
+/// gains are. A new velocity is reached to gain / (gain + drag) before the integrator has changed.
+TEST(TruthVehicle, AgainstDragItStopsLateAndReachesACommandInPart)
+{
+    constexpr double kSpeed = 5.0;
+    constexpr double kGain = 1.8;
+    constexpr double kIntegral = 0.4;
+    for (const double drag : {0.2, 0.5, kRecordedDrag}) {
+        TruthLimits limits;
+        limits.max_acceleration = limits.max_vertical_acceleration = 50.0;
+        limits.drag = drag;
+        Truth stops;
+        stops.velocity = Vec(kSpeed, 0, 0);
+        stops.held = held_at(stops.velocity, limits);
+        for (int i = 0; i < 20000; ++i) {
+            fly(stops, Vec::Zero(), limits, kDt);
+        }
+        EXPECT_NEAR(stops.position.x(), drag * kSpeed / kIntegral, 0.05) << drag;
+        EXPECT_NEAR(stops.velocity.norm(), 0.0, 1e-6) << drag;
+        Truth starts;
+        for (int i = 0; i < 200; ++i) {
+            fly(starts, Vec(0, kSpeed, 0), limits, kDt);
+        }
+        // After 1 s; what the integrator has gained by then is less than half of what is missing.
+        const double in_part = kSpeed * kGain / (kGain + drag);
+        EXPECT_GT(starts.velocity.y(), 0.85 * in_part) << drag;
+        EXPECT_LT(starts.velocity.y(), kSpeed - 0.5 * (kSpeed - in_part)) << drag;
+    }
+}
+
 TEST(TruthVehicle, SettlesOnTheCommandAndStops)
 {
     const TruthLimits limits;

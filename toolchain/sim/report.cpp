@@ -284,8 +284,10 @@ ReportedFlight report_on(const Scenario& scenario, Record record, bool with_judg
         const auto judge_at = [&](double time) {
             const Sample& then =
                 *std::find_if(r.samples.begin(), r.samples.end() - 1, [&](const Sample& s) { return s.time >= time; });
-            return judge_from(scenario, {then.position, then.velocity, then.acceleration, 0.0}, then.time, kJudged,
-                              trials == Trials::until_kept ? Trials::until_broken : trials);
+            return judge_from(
+                scenario,
+                {then.position, then.velocity, then.acceleration, 0.0, held_at(then.velocity, scenario.vehicle)},
+                then.time, kJudged, trials == Trials::until_kept ? Trials::until_broken : trials);
         };
         flight.last_chance = judge_at(in_sight);
         flight.late_chance = judge_at(in_sight + kReaction);

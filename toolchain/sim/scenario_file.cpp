@@ -35,6 +35,7 @@ void read_vehicle(YamlMap& root, TruthLimits& v)
     number(*map, "max_yaw_rate", v.max_yaw_rate, {0.05F, 20.0F});
     number(*map, "min_speed", v.min_speed, {0.0F, 100.0F});
     number(*map, "max_course_rate", v.max_course_rate, {0.0F, 20.0F});
+    number(*map, "drag", v.drag, {0.0F, 5.0F});
     map->finish();
 }
 

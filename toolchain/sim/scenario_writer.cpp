@@ -62,6 +62,7 @@ void put_vehicle(YAML::Emitter& out, const TruthLimits& v)
     put(out, "max_yaw_rate", v.max_yaw_rate);
     put(out, "min_speed", v.min_speed);
     put(out, "max_course_rate", v.max_course_rate);
+    put(out, "drag", v.drag);
     out << EndMap;
 }
 

@@ -37,6 +37,31 @@ void bound_acceleration(Truth& truth, const TruthLimits& limits) noexcept
         std::clamp(truth.acceleration.z(), -limits.max_vertical_acceleration, limits.max_vertical_acceleration);
 }
 
+/// PX4's gains as delivered (MPC_XY_VEL_P_ACC, MPC_XY_VEL_I_ACC, MPC_Z_VEL_P_ACC, MPC_Z_VEL_I_ACC). It knows nothing of
+/// drag: a new velocity is reached in part, to gain / (gain + drag), and the rest as the integrator follows.
+void move_against_drag(Truth& truth, const Vec& goal, const TruthLimits& limits, double dt) noexcept
+{
+    static const Vec kGain(1.8, 1.8, 4.0);
+    static const Vec kIntegral(0.4, 0.4, 2.0);
+    constexpr double kThrustLag = 0.15;  // [s]
+    const Vec error = goal - truth.velocity;
+    Vec wanted = kGain.cwiseProduct(error) + truth.held;
+    const double level = wanted.head<2>().norm();
+    if (level > limits.max_acceleration) {
+        wanted.head<2>() *= limits.max_acceleration / level;
+    } else {
+        truth.held.head<2>() += dt * kIntegral.head<2>().cwiseProduct(error.head<2>());
+    }
+    const double most = limits.max_vertical_acceleration;
+    truth.held.z() += std::abs(wanted.z()) > most ? 0.0 : dt * kIntegral.z() * error.z();
+    wanted.z() = std::clamp(wanted.z(), -most, most);
+    const Vec thrust = truth.acceleration + limits.drag * truth.velocity;
+    truth.acceleration = thrust + (wanted - thrust) * (dt / kThrustLag) - limits.drag * truth.velocity;
+    const Vec before = truth.velocity;
+    truth.velocity += dt * truth.acceleration;
+    truth.position += 0.5 * dt * (before + truth.velocity);
+}
+
 void turn_nose(Truth& truth, const TruthLimits& limits, double dt) noexcept
 {
     const Plane course = truth.velocity.head<2>();
@@ -57,6 +82,10 @@ void move(Truth& truth, const Vec& command, const TruthLimits& limits, double dt
     }
     Vec goal = command;
     goal.z() = std::clamp(goal.z(), -limits.max_descent, limits.max_climb);
+    if (limits.drag > 0.0) {
+        move_against_drag(truth, goal, limits, dt);
+        return;
+    }
     const double w = limits.omega;
     truth.acceleration += dt * (w * w * (goal - truth.velocity) - 2.0 * limits.damping * w * truth.acceleration);
     bound_acceleration(truth, limits);

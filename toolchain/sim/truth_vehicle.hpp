@@ -18,14 +18,24 @@ struct TruthLimits {
     double min_speed = 0.0;                  ///< of a fixed wing (arduplane.hpp) [m/s]; 0: a multirotor
     double max_course_rate =
         0.0;  ///< turn rate of the velocity above 0.5 m/s [rad/s]; 0: only the acceleration bounds it
+    /// > 0: a multirotor that PX4's velocity controller flies against this drag, as PX4's own simulator does at
+    /// kRecordedDrag (test replay.recordings); `omega` and `damping` do not matter then [1/s].
+    double drag = 0.0;
 };
 
 struct Truth {
     Vec position = Vec::Zero();
     Vec velocity = Vec::Zero();
     Vec acceleration = Vec::Zero();
-    double yaw = 0.0;  ///< [rad], counter-clockwise from east
+    double yaw = 0.0;        ///< [rad], counter-clockwise from east
+    Vec held = Vec::Zero();  ///< with drag: what the velocity controller's integrator adds [m/s2]
 };
+
+/// Drag of the vehicle in PX4's simulator [1/s].
+inline constexpr double kRecordedDrag = 0.9;
+
+/// The velocity is flown for long: what the integrator holds then.
+[[nodiscard]] inline Vec held_at(const Vec& velocity, const TruthLimits& limits) { return limits.drag * velocity; }
 
 /// One step of the vehicle under a velocity command: second-order response, bounded acceleration, climb, descent and
 /// turn rates. Accurate for dt well below 1 / omega; the simulator uses kStep. O(1).

@@ -19,6 +19,7 @@ World::World(const Scenario& scenario)
     own_.position = scenario.start_position;
     own_.velocity = scenario.start_velocity;
     own_.yaw = std::atan2(own_.velocity.y(), own_.velocity.x());
+    own_.held = held_at(own_.velocity, limits_);
     for (const Threat& threat : scenario.threats) {
         positions_.push_back(threat.position_at(0.0));
         appeared_.push_back(-1);
