@@ -20,7 +20,7 @@ import figures_registry  # noqa: E402
 import figures_run  # noqa: E402
 
 COPIED = ("README.md", "CONTRIBUTING.md", "CMakeLists.txt", "CMakePresets.json", "docs", "core", "firmware", "hal", "tests/checks", "tests/flight_log",
-          "tests/timing", "tests/target", "tests/scenario", "tests/property", "tests/unit", "tests/mutation", "toolchain")
+          "tests/timing", "tests/target", "tests/scenario", "tests/replay", "tests/property", "tests/unit", "tests/mutation", "toolchain")
 DIGIT = re.compile(r"\d")
 
 
