@@ -56,7 +56,7 @@ public:
         : begins_(latency_of(s) + ahead), velocity_(track.velocity), braking_(track.velocity, s.limits), threat_(track)
     {
         const float acceleration =
-            std::max(world::unheard_acceleration(*track.track, s.limits), s.limits.max_vertical_acceleration);
+            std::max(world::unheard_acceleration(*track.track, s.limits, s.rules), s.limits.max_vertical_acceleration);
         const float speed = velocity_.norm();
         const float most = speed + std::max(speed, s.limits.cruise_speed);
         const Seconds unheard = as_reported ? 0.0F : std::max(s.now - track.track->stamp, 0.0F) + latency_of(s);

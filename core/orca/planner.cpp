@@ -64,8 +64,8 @@ Neighbour neighbour_of(const world::Situation& s, const world::Threat& threat, c
     out.max_speed = std::max(settings.limits.max_speed, threat.velocity.norm());
     out.acceleration = threat.track->max_acceleration;
     if (threat.reciprocal) {
-        // It changes its velocity as much as the own vehicle does, and that since its report.
-        out.acceleration = std::max(out.acceleration, s.limits.max_acceleration);
+        // It changes its velocity as much as a vehicle that avoids us may, and that since its report.
+        out.acceleration = std::max(out.acceleration, world::fellow_acceleration(s.limits, s.rules));
         out.age = std::max(s.now - threat.track->stamp, 0.0F);
     }
     out.id = threat.track->id;

@@ -22,7 +22,7 @@ struct WellClear {
 };
 
 /// What the supervisor and all methods share: how far ahead threats count, how large they are, and how the vehicle
-/// answers. One value for all of them: what one sees as a conflict the others see too. 44 bytes.
+/// answers. One value for all of them: what one sees as a conflict the others see too. 48 bytes.
 struct FlightRules {
     Seconds lookahead = 8.0F;  ///< conflicts are predicted this far ahead, 1..60 [s]
     /// Until the vehicle answers, planning and the way to the autopilot included, it flies on as it does, 0..1 [s].
@@ -33,6 +33,8 @@ struct FlightRules {
     EscapeRule escape{};
     path::FollowerGains gains{};  ///< of the follower, 0..10 each
     WellClear well_clear{};
+    /// Cooperative vehicles accelerate no harder than this or the own limit, whichever is more, 0..100 [m/s2].
+    float fellow_acceleration = 0.0F;
 };
 
 /// Whether every rule is finite and within its range. O(1).
@@ -43,7 +45,7 @@ struct FlightRules {
            within(r.clearance, 0.0F, 10.0F) && within(r.escape.slack, 0.0F, 1.0F) &&
            within(r.escape.speed, 0.0F, 10.0F) && within(r.gains.position_gain, 0.0F, 10.0F) &&
            within(r.gains.max_correction, 0.0F, 10.0F) && within(r.well_clear.radius, 0.0F, 5000.0F) &&
-           within(r.well_clear.height, 1.0F, 1000.0F);
+           within(r.well_clear.height, 1.0F, 1000.0F) && within(r.fellow_acceleration, 0.0F, 100.0F);
 }
 
 }  // namespace jink::world

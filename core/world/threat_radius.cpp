@@ -13,7 +13,7 @@ Doubt doubt_of(const Situation& situation, const Track& track) noexcept
     /// As long as the supervisor waits on top of the stopping time before it forces anything [s].
     constexpr Seconds kReserve = 0.75F;
     const float own = situation.limits.max_acceleration;
-    const float hidden = unheard_acceleration(track, situation.limits) -
+    const float hidden = unheard_acceleration(track, situation.limits, situation.rules) -
                          track.max_acceleration;  // the rest is in the track's own growth
     if (!track.cooperative || !(hidden > 0.0F)) {
         return {};

@@ -162,10 +162,11 @@ void TrackTable::move(const Vec3& by) noexcept
     e.changing = 0;
 }
 
-[[gnu::cold, gnu::noinline]] bool TrackTable::any_accelerates_harder(const vehicle::VehicleLimits& own) const noexcept
+[[gnu::cold, gnu::noinline]] bool TrackTable::any_accelerates_harder(const vehicle::VehicleLimits& own,
+                                                                     const FlightRules& rules) const noexcept
 {
     return std::any_of(entries_.begin(), entries_.end(),
-                       [&](const Entry& e) noexcept { return accelerates_harder(e.track, own); });
+                       [&](const Entry& e) noexcept { return accelerates_harder(e.track, own, rules); });
 }
 
 void TrackTable::filter(Entry& e, const TrackMeasurement& m) noexcept

@@ -105,7 +105,8 @@ public:
     [[nodiscard]] TrackId id_in_snapshot(std::size_t index) const noexcept { return snapshot_[index].id; }
 
     /// Whether any track accelerates_harder. O(kMaxTracks).
-    [[nodiscard]] bool any_accelerates_harder(const vehicle::VehicleLimits& own) const noexcept;
+    [[nodiscard]] bool any_accelerates_harder(const vehicle::VehicleLimits& own,
+                                              const FlightRules& rules) const noexcept;
 
     /// The frame's origin turned out to lie elsewhere, or was moved: every track goes by as much [m]. O(kMaxTracks).
     void move(const Vec3& by) noexcept;

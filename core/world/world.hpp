@@ -207,16 +207,24 @@ enum class PlanStatus : std::uint8_t {
     return situation.rules.k_sigma * situation.own.sigma_position;
 }
 
-/// Whether a cooperative vehicle accelerates harder than the own one may: by a quarter more than both limits.
-[[nodiscard]] inline bool accelerates_harder(const Track& track, const vehicle::VehicleLimits& own) noexcept
+/// Level acceleration that cooperative vehicles are counted on not to exceed: the own limit, since they fly by the same
+/// rules, or that of the rules, where it is more [m/s2].
+[[nodiscard]] inline float fellow_acceleration(const vehicle::VehicleLimits& own, const FlightRules& rules) noexcept
 {
-    return track.shown_acceleration > 1.25F * std::max(own.max_acceleration, own.max_vertical_acceleration);
+    return std::max(own.max_acceleration, rules.fellow_acceleration);
 }
-/// Level acceleration that a cooperative vehicle may have flown unheard: as hard as the own one may, since it flies by
-/// the same rules, or as hard as it has shown [m/s2].
-[[nodiscard]] inline float unheard_acceleration(const Track& track, const vehicle::VehicleLimits& own) noexcept
+/// Whether a cooperative vehicle accelerates harder than that and than the own vertical limit, by a quarter.
+[[nodiscard]] inline bool accelerates_harder(const Track& track, const vehicle::VehicleLimits& own,
+                                             const FlightRules& rules) noexcept
 {
-    return accelerates_harder(track, own) ? track.shown_acceleration : own.max_acceleration;
+    return track.shown_acceleration > 1.25F * std::max(fellow_acceleration(own, rules), own.max_vertical_acceleration);
+}
+/// Level acceleration that a cooperative vehicle may have flown unheard: fellow_acceleration, or as hard as it has
+/// shown [m/s2].
+[[nodiscard]] inline float unheard_acceleration(const Track& track, const vehicle::VehicleLimits& own,
+                                                const FlightRules& rules) noexcept
+{
+    return accelerates_harder(track, own, rules) ? track.shown_acceleration : fellow_acceleration(own, rules);
 }
 
 /// What a vehicle that avoids us too may have done since its report and did not announce: it changes its velocity no

@@ -97,6 +97,9 @@ void Coprocessor::take_inbox(TimePoint now) noexcept
     picture_.take_ranges(inbox, own_, c, now);
     picture_.take_clouds(own_, autopilot_.is_heard(), c, now);
     params_.take(inbox.params, link_, outbox_);
+    if (inbox.has_limits) {
+        params_.believe(inbox.limits, outbox_);
+    }
     apply_configuration();
     params_.continue_list(link_);
     telemetry_.take_commands(inbox.commands, outbox_.log(), params_.parameters());

@@ -51,10 +51,32 @@ void ParamExchange::continue_list(link::Link& link) noexcept
     }
 }
 
+void ParamExchange::believe(const link::ReportedLimits& reported, Outbox& outbox) noexcept
+{
+    const vehicle::VehicleLimits before = configuration().limits;
+    parameters_.believe(reported);
+    has_new_limits_ = true;
+    const vehicle::VehicleLimits& limits = configuration().limits;
+    const auto say = [&outbox](Param param, float was, float is) {
+        if (is != was) {
+            Text text;
+            text << "jink: " << param_table()[static_cast<std::size_t>(param)].name << " counts as " << is
+                 << ", the autopilot's";
+            outbox.say(link::Severity::notice, text.view());
+        }
+    };
+    say(Param::acceleration, before.max_acceleration, limits.max_acceleration);
+    say(Param::vertical_acceleration, before.max_vertical_acceleration, limits.max_vertical_acceleration);
+    say(Param::climb, before.max_climb, limits.max_climb);
+    say(Param::descent, before.max_descent, limits.max_descent);
+    say(Param::lag, before.velocity_lag, limits.velocity_lag);
+}
+
 bool ParamExchange::take_change() noexcept
 {
-    const bool changed = applied_ != parameters_.generation();
+    const bool changed = has_new_limits_ || applied_ != parameters_.generation();
     applied_ = parameters_.generation();
+    has_new_limits_ = false;
     return changed;
 }
 

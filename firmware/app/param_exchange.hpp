@@ -26,9 +26,11 @@ public:
     void take(std::span<const link::ParamRequest> requests, link::Link& link, Outbox& outbox) noexcept;
     /// The next parts of a list: a few per step, so that the list never fills the transmit buffer.
     void continue_list(link::Link& link) noexcept;
+    /// What the autopilot says about its limits; a text for each that bounds a parameter from now on.
+    [[gnu::cold]] void believe(const link::ReportedLimits& reported, Outbox& outbox) noexcept;
     /// @return how many were refused: out of range, or not together with the others
     std::size_t restore(const ParamValues& values) noexcept { return parameters_.set_each(values); }
-    /// Whether parameters changed since the last call.
+    /// Whether the configuration changed since the last call.
     [[nodiscard]] bool take_change() noexcept;
 
     [[nodiscard]] const Parameters& parameters() const noexcept { return parameters_; }
@@ -44,6 +46,7 @@ private:
     ParamService service_;
     Diagnostics& counts_;
     std::uint32_t applied_;                ///< generation
+    bool has_new_limits_ = false;          ///< limits of the autopilot, which are not applied yet
     std::optional<std::uint16_t> cursor_;  ///< next part of a list that is asked for
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "firmware/app/parameters.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "firmware/app/method_orders.hpp"
@@ -66,7 +67,7 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     {"GEO_T_HIGH", 7.0814F, 0.01F, 1000, false, "flight time that costs 1 (before the source's factor 1.15) [s]"},
     {"GEO_LATENCY", 0.1F, 0, 1, false, "from planning until the vehicle answers: plan, link and autopilot [s]"},
     {"JNK_STANDBY", 1, 0, 1, true, "1: on a mission, what a take-over needs is kept ready: HEARTBEATs, PX4's stream"},
-    {"JNK_ASK_RATES", 1, 0, 1, true, "1: ask the autopilot for messages that come too seldom"},
+    {"JNK_ASK_RATES", 1, 0, 1, true, "1: ask the autopilot for messages that come too seldom, and for its limits"},
     {"JNK_TELL_NEAR", 0, 0, 1, true, "1: tell the CAN bus what is near (Proximity)"},
     {"JNK_METHODS", kBuiltMethods, 1, kAllMethods, true,
      "methods that are asked, sum of: 1 geometric, 2 reach sets, 4 reciprocal; the best answer of all is flown"},
@@ -83,8 +84,19 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     {"JNK_WELL_HEIGHT", 76, 1, 1000, false, "the same above and below [m]; ASTM F3442: 76"},
 }};
 
+void bound(vehicle::VehicleLimits& limits, const link::ReportedLimits& reported) noexcept
+{
+    const auto lower = [](float& limit, float by) { limit = by > 0.0F ? std::min(limit, by) : limit; };
+    lower(limits.max_acceleration, reported.acceleration);
+    lower(limits.max_vertical_acceleration, reported.vertical_acceleration);
+    lower(limits.max_climb, reported.climb);
+    lower(limits.max_descent, reported.descent);
+    limits.velocity_lag = std::max(limits.velocity_lag, reported.lag);
+}
+
 [[gnu::cold]] Configuration build(const std::array<float, kParamCount>& v,
-                                  [[maybe_unused]] const reach::VehicleSets* sets) noexcept
+                                  [[maybe_unused]] const reach::VehicleSets* sets,
+                                  const link::ReportedLimits& reported) noexcept
 {
     const auto at = [&](Param p) { return v[static_cast<std::size_t>(p)]; };
     const auto whole = [&](Param p) { return static_cast<std::uint32_t>(at(p)); };
@@ -104,6 +116,7 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     c.limits.max_acceleration = at(Param::acceleration);
     c.limits.max_vertical_acceleration = at(Param::vertical_acceleration);
     c.limits.velocity_lag = at(Param::lag);
+    c.rules.fellow_acceleration = at(Param::acceleration);
     c.airframe.mass = at(Param::mass);
     c.airframe.drag_coefficient = at(Param::drag);
     c.airframe.effective_area = at(Param::area);
@@ -173,6 +186,10 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
         // Sets of more nodes or cells than the capacities are not flown.
         c.reach_unsuited = !reach::is_valid(c.reach) || !reach::suits(*sets, c.limits);
     }
+    // After the sets: a path of theirs that asks for more than the autopilot flies is refused by its predicted flight.
+    if (c.ask_rates) {
+        bound(c.limits, reported);
+    }
     c.blocks_unseen = whole(Param::unseen) == 1;
     c.orca.gives_up_blocked = c.supervisor.order != avoid::MethodOrder(kOrca);
     g.caps.time_low = at(Param::time_low);
@@ -220,14 +237,20 @@ Parameters::Parameters() noexcept : values_{}
     if constexpr (kHasReach) {
         sets_ = &reach_sets();
     }
-    configuration_ = build(values_, sets_);
+    configuration_ = build(values_, sets_, reported_);
 }
 
 void Parameters::use(const reach::VehicleSets& sets) noexcept
 {
     sets_ = &sets;
-    configuration_ = build(values_, sets_);
+    configuration_ = build(values_, sets_, reported_);
     ++generation_;
+}
+
+void Parameters::believe(const link::ReportedLimits& reported) noexcept
+{
+    reported_ = reported;
+    configuration_ = build(values_, sets_, reported_);
 }
 
 ParamStatus Parameters::set_all(const std::array<float, kParamCount>& values) noexcept
@@ -238,7 +261,7 @@ ParamStatus Parameters::set_all(const std::array<float, kParamCount>& values) no
             return status;
         }
     }
-    const Configuration candidate = build(values, sets_);
+    const Configuration candidate = build(values, sets_, reported_);
     if (!fits_together(candidate)) {
         return ParamStatus::inconsistent;
     }

@@ -12,6 +12,7 @@
 #include "core/reach/planner.hpp"
 #include "core/world/track_table.hpp"
 #include "firmware/app/method_orders.hpp"
+#include "firmware/link/messages.hpp"
 
 namespace jink::app {
 
@@ -171,6 +172,10 @@ public:
     /// Index of a name (NUL or end of view ends it); kParamCount when unknown. O(kParamCount).
     [[nodiscard]] static std::size_t find(std::string_view name) noexcept;
 
+    /// What the autopilot says about its limits bounds those of the parameters: the lower one holds, of lags the
+    /// longer.
+    void believe(const link::ReportedLimits& reported) noexcept;
+
     /// Takes other reach sets than this build's. They outlive the parameters.
     void use(const reach::VehicleSets& sets) noexcept;
 
@@ -181,6 +186,7 @@ public:
 private:
     std::array<float, kParamCount> values_;
     const reach::VehicleSets* sets_ = nullptr;
+    link::ReportedLimits reported_;
     Configuration configuration_;
     std::uint32_t generation_ = 0;
 };

@@ -128,7 +128,8 @@ void Telemetry::report_causes(const Reported& of, Outbox& outbox) noexcept
         outbox.say(link::Severity::warning, "jink: too much traffic, some is left out");
         said_.flood = true;
     }
-    if (!said_.harder && heard && of.picture.track_table().any_accelerates_harder(of.configuration.limits)) {
+    if (!said_.harder && heard &&
+        of.picture.track_table().any_accelerates_harder(of.configuration.limits, of.configuration.rules)) {
         outbox.say(link::Severity::warning, "jink: neighbour accelerates beyond VEH_ACC");
         said_.harder = true;
     }

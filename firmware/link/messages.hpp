@@ -117,6 +117,15 @@ struct LegReport {
     world::Leg leg;  ///< speed: ground speed of the mission, which the autopilot may not reach; 0: not given
 };
 
+/// What the autopilot's own parameters say about the vehicle. 0: not reported.
+struct ReportedLimits {
+    float acceleration = 0.0F;           ///< level [m/s2]
+    float vertical_acceleration = 0.0F;  ///< [m/s2]
+    float climb = 0.0F;                  ///< greatest rate [m/s]
+    float descent = 0.0F;                ///< greatest rate [m/s]
+    Seconds lag = 0.0F;                  ///< time constant of its velocity loop
+};
+
 inline constexpr std::size_t kParamNameLength = 16;
 using ParamName = std::array<char, kParamNameLength>;  ///< padded with NUL, no terminator when full
 
@@ -172,6 +181,8 @@ struct Inbox {
     bool leg_lost = false;  ///< the autopilot flies to an unknown destination: earlier legs are no longer valid
     bool has_home = false;  ///< only if both home and the origin are known; a later report replaces the earlier
     Vec3 home = Vec3::Zero();
+    bool has_limits = false;
+    ReportedLimits limits;  ///< all that are known so far
     bool has_sticks = false;
     SticksReport sticks;               ///< the newest
     StaticVector<RangeScan, 4> scans;  ///< the newest of each sensor
@@ -185,7 +196,7 @@ struct Inbox {
 
     void clear() noexcept
     {
-        has_sticks = false;
+        has_sticks = has_limits = false;
         earlier_autopilot.clear();
         has_own_state = has_bus_state = has_autopilot = has_leg = leg_lost = has_home = false;
         own_state.estimator_reset = bus_state.estimator_reset = false;

@@ -66,7 +66,6 @@ TEST(EncounterKinds, ChangeOneThingEach)
     }
     EXPECT_EQ(encounter_of(EncounterKind::seldom, 3).traffic.rate, 1.0);
     EXPECT_EQ(encounter_of(EncounterKind::windy, 3).wind.at_20_ft, 8.0);
-    EXPECT_EQ(encounter_of(EncounterKind::sluggish, 3).vehicle.drag, kRecordedDrag);
 }
 
 TEST(EncounterKinds, LateOnesAreReportedShortlyBeforeTheyMeet)

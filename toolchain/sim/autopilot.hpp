@@ -122,6 +122,7 @@ private:
     void hear_command(const link::mavlink::CommandLong& command, link::mavlink::Header from);
     void hear_command_int(const link::mavlink::CommandInt& command, link::mavlink::Header from);
     void hear_param(const link::mavlink::ParamValue& value);
+    void answer_param(const link::mavlink::ParamRequestRead& request);
     void answer_timesync(const link::mavlink::Timesync& sync, link::mavlink::Header from);
     [[nodiscard]] std::uint8_t set_mode(const link::mavlink::CommandLong& command);
     [[nodiscard]] bool send_message(int id);

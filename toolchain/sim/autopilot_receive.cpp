@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The autopilot's handling of the co-processor's messages.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 
+#include "firmware/link/mavlink/numbers.hpp"
 #include "firmware/link/mavlink/text.hpp"
 #include "toolchain/sim/autopilot.hpp"
 #include "toolchain/sim/modes.hpp"
@@ -18,11 +21,7 @@ constexpr std::uint8_t kTemporarilyRejected = 1;
 constexpr std::uint8_t kDenied = 2;
 constexpr std::uint8_t kUnsupported = 3;
 constexpr std::uint8_t kFailed = 4;
-constexpr std::uint16_t kDoSetMode = 176;
-constexpr std::uint16_t kSetMessageInterval = 511;
-constexpr std::uint16_t kRequestMessage = 512;
 constexpr float kCustomModeEnabled = 1.0F;
-constexpr float kArmed = 128.0F;
 /// PX4 enters OFFBOARD if the last set-point is not older than this [us] (offboardCheck.cpp since v1.14). PX4's
 /// documentation (Offboard Mode, v1.16) requires a second of set-points with gaps up to this: Faults::offboard_proof.
 constexpr Micros kStreamGap = kSecond / 2;
@@ -59,6 +58,7 @@ void Autopilot::handle(const Frame& frame)
     CommandLong command;
     CommandInt command_int;
     ParamValue value;
+    ParamRequestRead read;
     Timesync sync;
     Statustext text;
     Collision collision;
@@ -72,6 +72,8 @@ void Autopilot::handle(const Frame& frame)
         hear_command_int(command_int, frame.header);
     } else if (decode(frame, value)) {
         hear_param(value);
+    } else if (decode(frame, read)) {
+        answer_param(read);
     } else if (decode(frame, sync)) {
         answer_timesync(sync, frame.header);
     } else if (decode(frame, text)) {
@@ -201,6 +203,33 @@ void Autopilot::hear_param(const ParamValue& value)
     }
     if (parameters_verified_ < 0 && parameters_missing().empty()) {
         parameters_verified_ = world_.now();
+    }
+}
+
+/// The parameters that bound what is flown; of the others nothing is answered, as ArduCopter does with a name that it
+/// does not know.
+void Autopilot::answer_param(const ParamRequestRead& request)
+{
+    if (!for_us(request.target_system, request.target_component) || is_plane()) {
+        return;
+    }
+    struct Known {
+        Stack stack;
+        std::string_view name;
+        double value;
+    };
+    const TruthLimits& limits = scenario_.vehicle;
+    const std::array known{
+        Known{Stack::ardupilot, "WPNAV_ACCEL", 100.0 * limits.max_acceleration},
+        Known{Stack::ardupilot, "WPNAV_ACCEL_Z", 100.0 * limits.max_vertical_acceleration},
+        Known{Stack::ardupilot, "PSC_JERK_XY", limits.reported_jerk},
+        Known{Stack::px4, "MPC_Z_VEL_MAX_UP", limits.max_climb},
+        Known{Stack::px4, "MPC_Z_VEL_MAX_DN", limits.max_descent},
+    };
+    for (const Known& one : known) {
+        if (one.stack == scenario_.stack && one.name == text_of(request.param_id) && one.value > 0.0) {
+            writer_.write(ParamValue{static_cast<float>(one.value), 1, 0xFFFF, request.param_id, kReal32});
+        }
     }
 }
 

@@ -161,6 +161,9 @@ Scenario encounter_scenario(std::uint64_t seed, const Variant& variant)
     Scenario scenario = encounter_of(variant.kind, seed);
     scenario.planner = variant.planner;
     scenario.board = variant.board;
+    if (variant.as_recorded) {
+        answer_as_recorded(scenario);
+    }
     for (const auto& [name, value] : variant.parameters) {
         scenario.parameters[name] = value;
     }

@@ -60,6 +60,7 @@ struct Variant {
     std::map<std::string, double> parameters;
     Board board{};
     EncounterKind kind = EncounterKind::open;
+    bool as_recorded = false;  ///< vehicles answer as their autopilots in the recordings: answer_as_recorded()
 
     bool operator==(const Variant&) const = default;
 };

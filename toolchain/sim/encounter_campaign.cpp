@@ -145,9 +145,10 @@ std::string EncounterSetup::manifest() const
     const std::string sets = variant.board.reduced_sets ? "\nreach_sets reduced" : "";
     const std::string kind =
         variant.kind == EncounterKind::open ? "" : "\nencounters " + std::string(to_string(variant.kind));
-    text << kKind << kind << "\nplanner " << to_string(variant.planner) << "\nset" << parameters_text(variant) << clock
-         << sets << "\nseeds " << seeds_text << "\ncount " << seeds.size() << "\nblock " << block << "\nsources "
-         << source_digest() << "\n";
+    const std::string vehicle = variant.as_recorded ? "\nvehicle as_recorded" : "";
+    text << kKind << kind << vehicle << "\nplanner " << to_string(variant.planner) << "\nset"
+         << parameters_text(variant) << clock << sets << "\nseeds " << seeds_text << "\ncount " << seeds.size()
+         << "\nblock " << block << "\nsources " << source_digest() << "\n";
     return text.str();
 }
 
@@ -193,6 +194,7 @@ FolderSetup read_setup(const BlockFolder& folder)
     const auto of_kind = std::find_if(kEncounterKinds.begin(), kEncounterKinds.end(),
                                       [&](EncounterKind one) { return to_string(one) == values["encounters"]; });
     setup.variant.kind = of_kind != kEncounterKinds.end() ? *of_kind : EncounterKind::open;
+    setup.variant.as_recorded = values["vehicle"] == "as_recorded";
     static_cast<void>(values.count("clock") == 0 || read(values["clock"], setup.variant.board.clock));
     setup.variant.board.reduced_sets = values["reach_sets"] == "reduced";
     std::istringstream parameters(values["set"]);

@@ -116,7 +116,6 @@ std::string_view to_string(EncounterKind kind) noexcept
     case EncounterKind::cluttered: return "cluttered";
     case EncounterKind::late: return "late";
     case EncounterKind::built_up: return "built_up";
-    case EncounterKind::sluggish: return "sluggish";
     case EncounterKind::open: break;
     }
     return "open";
@@ -157,10 +156,6 @@ Scenario encounter_of(EncounterKind kind, std::uint64_t seed)
     case EncounterKind::late:
         s.threats.resize(1);
         s.threats[0].appears_at = meeting_time(s, s.threats[0]) - uniform(random, 0.4, 1.6);
-        break;
-    case EncounterKind::sluggish:
-        s.vehicle.drag = kRecordedDrag;
-        s.vehicle.max_acceleration = s.vehicle.max_vertical_acceleration = 8.0;
         break;
     case EncounterKind::built_up:
     case EncounterKind::open: break;

@@ -22,12 +22,11 @@ enum class EncounterKind : std::uint8_t {
     cluttered,  ///< 12 pillars of up to 1.5 m about the leg, seen by a level scan
     late,       ///< the first intruder alone, reported 0.4 to 1.6 s before they meet
     built_up,   ///< 2 to 6 boxes about the leg, seen by a LiDAR alone: built_up_area()
-    sluggish,   ///< the vehicle answers as PX4's in the recordings: kRecordedDrag, up to 8 m/s2
 };
 inline constexpr std::array kEncounterKinds{EncounterKind::open,     EncounterKind::turning,   EncounterKind::climbing,
                                             EncounterKind::speeding, EncounterKind::seldom,    EncounterKind::drifting,
                                             EncounterKind::windy,    EncounterKind::cluttered, EncounterKind::late,
-                                            EncounterKind::built_up, EncounterKind::sluggish};
+                                            EncounterKind::built_up};
 [[nodiscard]] std::string_view to_string(EncounterKind kind) noexcept;
 /// True if a flight ends at the goal (Scenario::to_goal), so that a goal can be missed.
 [[nodiscard]] constexpr bool flies_to_goal(EncounterKind kind) noexcept { return kind == EncounterKind::built_up; }

@@ -255,7 +255,8 @@ std::string summary_text(const FolderSetup& setup, const Results& results)
     std::string text;
     const Board& board = setup.variant.board;
     const std::string clock = board.clock == 0 ? "" : ", work of a step for " + std::to_string(board.clock) + " MHz";
-    const std::string on = clock + (board.reduced_sets ? ", reduced reach sets" : "");
+    const std::string vehicle = setup.variant.as_recorded ? ", vehicles as recorded" : "";
+    const std::string on = vehicle + clock + (board.reduced_sets ? ", reduced reach sets" : "");
     const std::string kind =
         setup.variant.kind == EncounterKind::open ? "" : std::string(to_string(setup.variant.kind)) + " ";
     line(text, "%zu %sencounters, seeds %s, planner %s%s%s\n", results.size(), kind.c_str(), setup.seeds_text.c_str(),

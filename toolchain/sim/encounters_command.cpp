@@ -48,6 +48,8 @@ CLI::App& add_encounters(CLI::App& cli, EncountersOptions& options, bool with_th
     }
     CLI::Option* const kind =
         command->add_option("--kind", options.kind, "straight encounters, or harder ones")->check(CLI::IsMember(kinds));
+    CLI::Option* const vehicle = command->add_flag("--as-recorded", options.as_recorded,
+                                                   "vehicles answer set-points as their autopilots in the recordings");
     CLI::Option* const set = command->add_option("--set", options.parameters,
                                                  "NAME=VALUE: a parameter of the co-processor, any number of them");
     const std::vector<CLI::Option*> board = add_board(*command, options.board);
@@ -56,7 +58,7 @@ CLI::App& add_encounters(CLI::App& cli, EncountersOptions& options, bool with_th
     CLI::Option* const summary =
         command->add_option("--summary", options.summary, "flies nothing: summarises the blocks of this folder anew")
             ->check(CLI::ExistingDirectory);
-    for (CLI::Option* const other : {from, count, seeds, block, planner, kind, set, out, board[0], board[1]}) {
+    for (CLI::Option* const other : {from, count, seeds, block, planner, kind, vehicle, set, out, board[0], board[1]}) {
         summary->excludes(other);
     }
     if (with_threads) {
@@ -78,6 +80,7 @@ EncounterSetup setup_of(const EncountersOptions& options)
     setup.block = options.block;
     setup.variant.kind = *std::find_if(kEncounterKinds.begin(), kEncounterKinds.end(),
                                        [&](EncounterKind one) { return to_string(one) == options.kind; });
+    setup.variant.as_recorded = options.as_recorded;
     setup.variant.board = options.board;
     setup.variant.planner = options.planner == "source" ? PlannerKind::source : PlannerKind::product;
     setup.variant.parameters = parse_parameters(options.parameters);

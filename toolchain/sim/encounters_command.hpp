@@ -23,6 +23,7 @@ struct EncountersOptions {
     std::string seed_file;
     std::string planner = "product";
     std::string kind = "open";
+    bool as_recorded = false;
     Board board;
     std::vector<std::string> parameters;  ///< NAME=VALUE
     std::string out;

@@ -142,4 +142,10 @@ struct Scenario {
     Expectation expect;
 };
 
+/// The vehicle answers set-points as its autopilot did in the recordings.
+inline void answer_as_recorded(Scenario& scenario) noexcept
+{
+    scenario.stack == Stack::px4 ? answer_as_px4(scenario.vehicle) : answer_as_arducopter(scenario.vehicle);
+}
+
 }  // namespace jink::sim

@@ -25,7 +25,7 @@ struct SwarmSetup {
     double height = 20.0;       ///< of the circle's lowest point above home [m]
     double cruise = 1.0;        ///< [m/s]
     double acceleration = 2.0;  ///< of the vehicles, at most, to every side [m/s2]
-    double drag = 0.0;          ///< of the vehicles: TruthLimits::drag [1/s]
+    bool as_recorded = false;   ///< vehicles answer as their autopilots in the recordings, whatever `acceleration` says
     double slow = 1.0;          ///< share of it that every second vehicle flies at
     double spread = 0.1;        ///< largest start offset from the vehicle's place, per axis [m]
     bool back = false;          ///< the vehicles return to their starts

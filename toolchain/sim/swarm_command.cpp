@@ -97,11 +97,8 @@ CLI::App& add_swarm(CLI::App& cli, SwarmOptions& options)
     command->add_option("--cruise", s.cruise, "cruise speed, default 1 [m/s]")->check(finite(0.5, 20.0));
     command->add_option("--acceleration", s.acceleration, "of the vehicles, at most, default 2 [m/s2]")
         ->check(finite(0.2, 20.0));
-    command
-        ->add_option("--drag", s.drag,
-                     "of the vehicles, and PX4's velocity controller that does not know it; default 0: vehicles that "
-                     "reach every command [1/s]")
-        ->check(finite(0.0, 5.0));
+    command->add_flag("--as-recorded", s.as_recorded,
+                      "each vehicle answers as its autopilot in the recordings; --acceleration is what jink is told");
     command->add_option("--spread", s.spread, "of the starting places, default 0.1 [m]")->check(finite(0.0, 1.0));
     command->add_flag("--back", s.back, "and back again");
     command->add_option("--obstacles", s.obstacles, "that move, default 0")->check(whole(0, 62));

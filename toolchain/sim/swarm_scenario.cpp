@@ -83,7 +83,9 @@ Scenario swarm_scenario(const SwarmSetup& setup, std::uint64_t seed, unsigned in
     s.body_radius = setup.body;
     s.promise = setup.body;
     small_and_slow(s, cruise_of(setup, index), setup.acceleration);
-    s.vehicle.drag = setup.drag;
+    if (setup.as_recorded) {
+        answer_as_recorded(s);
+    }
     Vec off = off_place();
     for (unsigned i = 0; i < index; ++i) {
         off = off_place();  // draws of the vehicles before this one

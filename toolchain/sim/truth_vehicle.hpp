@@ -21,6 +21,7 @@ struct TruthLimits {
     /// > 0: a multirotor that PX4's velocity controller flies against this drag, as PX4's own simulator does at
     /// kRecordedDrag (test replay.recordings); `omega` and `damping` do not matter then [1/s].
     double drag = 0.0;
+    double reported_jerk = 0.0;  ///< ArduCopter's answer for PSC_JERK_XY [m/s3]; 0: none, the name is unknown to it
 };
 
 struct Truth {
@@ -33,6 +34,24 @@ struct Truth {
 
 /// Drag of the vehicle in PX4's simulator [1/s].
 inline constexpr double kRecordedDrag = 0.9;
+
+/// As PX4 in the recordings answers in OFFBOARD, with its parameters as delivered (test replay.recordings).
+inline void answer_as_px4(TruthLimits& limits) noexcept
+{
+    limits.drag = kRecordedDrag;
+    limits.max_acceleration = limits.max_vertical_acceleration = 8.0;
+    limits.max_climb = 3.0;
+    limits.max_descent = 1.5;
+}
+/// As ArduCopter in the recordings answers in GUIDED, with its parameters as delivered (test replay.recordings).
+inline void answer_as_arducopter(TruthLimits& limits) noexcept
+{
+    limits.omega = 3.5;
+    limits.damping = 0.9;
+    limits.max_acceleration = 2.5;
+    limits.max_vertical_acceleration = 1.0;
+    limits.reported_jerk = 5.0;
+}
 
 /// The velocity is flown for long: what the integrator holds then.
 [[nodiscard]] inline Vec held_at(const Vec& velocity, const TruthLimits& limits) { return limits.drag * velocity; }

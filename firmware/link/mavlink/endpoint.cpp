@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "firmware/link/mavlink/numbers.hpp"
+#include "firmware/link/mavlink/text.hpp"
 
 namespace jink::link::mavlink {
 namespace {
@@ -98,6 +99,7 @@ void Endpoint::dispatch_autopilot(const Context& c) noexcept
         break;
     }
     case Statustext::kInfo.id: on_status_text(c); break;
+    case ParamValue::kInfo.id: on_limit(c); break;
     case RcChannels::kInfo.id:
     case ManualControl::kInfo.id: on_sticks(c); break;
     default: dispatch_sensors(c);
@@ -161,6 +163,7 @@ void Endpoint::note(ClockEvent event) noexcept
         vtol_state_ = kVtolUnheard;
         mission_.forget();
         streams_.restart();
+        limits_.restart();
     }
 }
 
@@ -180,6 +183,22 @@ bool Endpoint::stamp_of(std::int64_t boot_us, TimePoint now, TimePoint& stamp) n
     }
     stamp = std::min(stamp, now);
     return true;
+}
+
+void Endpoint::on_limit(const Context& c) noexcept
+{
+    ParamValue m;
+    const bool is_float = decode(c.frame, m) && m.param_type == kReal32;
+    using Outcome = LimitRequests::Outcome;
+    switch (is_float ? limits_.heard(autopilot_.stack, text_of(m.param_id), m.param_value) : Outcome::not_a_limit) {
+    case Outcome::not_a_limit: ++diagnostics_.frames_ignored; break;
+    case Outcome::refused: ++diagnostics_.out_of_range; break;
+    case Outcome::unchanged: break;
+    case Outcome::changed:
+        c.inbox.limits = limits_.limits();
+        c.inbox.has_limits = true;
+        break;
+    }
 }
 
 void Endpoint::on_command_ack(const Context& c) noexcept

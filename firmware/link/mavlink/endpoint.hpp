@@ -5,6 +5,7 @@
 #include "firmware/link/mavlink/clock_sync.hpp"
 #include "firmware/link/mavlink/encoder.hpp"
 #include "firmware/link/mavlink/geodesy.hpp"
+#include "firmware/link/mavlink/limit_requests.hpp"
 #include "firmware/link/mavlink/messages.hpp"
 #include "firmware/link/mavlink/mission_client.hpp"
 #include "firmware/link/mavlink/modes.hpp"
@@ -85,6 +86,8 @@
 //   third is below 1000 us: receivers report a lost transmitter in this way (ArduPilot's FS_THR_VALUE). rssi is
 //   ignored: many receivers do not give any. MANUAL_CONTROL: beyond +-1000 (INT16_MAX: no such axis) likewise.
 // * Rates: messages that come too seldom are requested by COMMAND_LONG SET_MESSAGE_INTERVAL (511), see StreamRequests.
+// * Limits: the parameters that limit what a multirotor flies in the external mode are read from the autopilot by
+//   PARAM_REQUEST_READ, see LimitRequests. PARAM_VALUE counts from the autopilot alone, of type REAL32.
 // * Modes as in docs/guides/take_over.md; requests by COMMAND_LONG DO_SET_MODE (176), base mode 1 plus the armed bit
 //   (128) as received. A HEARTBEAT is requested by COMMAND_LONG REQUEST_MESSAGE (512) with param1 = 0: both stacks send
 //   it at once, and answer ACCEPTED. SET_MESSAGE_INTERVAL of HEARTBEAT is refused by PX4.
@@ -225,6 +228,7 @@ private:
     void on_param(const Context& c) noexcept;
     void on_tunnel(const Context& c) noexcept;
     void on_setup_signing(const Context& c) noexcept;
+    [[gnu::cold]] void on_limit(const Context& c) noexcept;
     [[gnu::cold]] void on_log_ack(const Context& c) noexcept;
 
     [[nodiscard]] bool from_autopilot(const Frame& frame) const noexcept;
@@ -268,6 +272,7 @@ private:
                                         std::span<std::byte> out) noexcept;
     bool send_unsent(const Unsent& message, Perishable kind) noexcept;
     void ask_for_streams(TimePoint now) noexcept;
+    void ask_for_limits(TimePoint now) noexcept;
     template <Message M>
     bool send(const M& message, Perishable kind = Perishable::no) noexcept
     {
@@ -283,6 +288,7 @@ private:
     ClockSync clock_;
     MissionClient mission_;
     StreamRequests streams_;
+    LimitRequests limits_;
     Neighbours neighbours_;
     bool asks_for_rates_ = false;
     std::uint8_t system_;

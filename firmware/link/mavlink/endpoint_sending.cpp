@@ -6,6 +6,7 @@
 #include "firmware/link/mavlink/endpoint.hpp"
 #include "firmware/link/mavlink/numbers.hpp"
 #include "firmware/link/mavlink/own_messages.hpp"
+#include "firmware/link/mavlink/text.hpp"
 
 namespace jink::link::mavlink {
 namespace {
@@ -110,6 +111,21 @@ void Endpoint::ask_for_streams(TimePoint now) noexcept
     }
 }
 
+void Endpoint::ask_for_limits(TimePoint now) noexcept
+{
+    if (!asks_for_rates_ || vehicle_class_ != VehicleClass::copter || !autopilot_.steerable) {
+        return;
+    }
+    if (const std::optional<std::string_view> name = limits_.next(autopilot_.stack, now)) {
+        ParamRequestRead m;
+        m.param_index = -1;
+        m.target_system = system_;
+        m.target_component = kAutopilotComponent;
+        static_cast<void>(set_text(m.param_id, *name));
+        send(m);
+    }
+}
+
 void Endpoint::service(TimePoint now) noexcept
 {
     if (system_ == 0) {
@@ -125,6 +141,7 @@ void Endpoint::service(TimePoint now) noexcept
         send(request);
     }
     ask_for_streams(now);
+    ask_for_limits(now);
     ask_for_places(now);
     service_mission(now);
 }

@@ -121,6 +121,23 @@ TEST_F(Doubted, AnOldReportHidesAPlaceAndAVelocityUntilTheOwnVehicleCanStand)
     }
 }
 
+/// The own vehicle may be bounded to less than the others are counted on to accelerate.
+TEST_F(Doubted, OthersMayAccelerateHarderThanTheOwnVehicleWhereTheRulesSaySo)
+{
+    track->stamp = scene.now - 1.3F;
+    const float as_the_own = doubt_of(scene.situation(), *track).velocity;
+    EXPECT_NEAR(as_the_own, 1.6F, 1e-5F);
+    scene.rules.fellow_acceleration = 1.0F;
+    EXPECT_EQ(doubt_of(scene.situation(), *track).velocity, as_the_own) << "less than the own limit";
+    scene.rules.fellow_acceleration = 5.0F;
+    EXPECT_NEAR(doubt_of(scene.situation(), *track).velocity, 4.6F, 1e-5F);
+    EXPECT_EQ(doubt_of(scene.situation(), *track).ends, kEnds) << "the own vehicle stops as before";
+    track->shown_acceleration = 6.0F;
+    EXPECT_NEAR(doubt_of(scene.situation(), *track).velocity, 4.6F, 1e-5F) << "within a quarter";
+    track->shown_acceleration = 7.0F;
+    EXPECT_NEAR(doubt_of(scene.situation(), *track).velocity, 6.6F, 1e-5F);
+}
+
 /// But for what it does within kFreshReport.
 TEST_F(Doubted, TheRealMotionOfTheOtherStaysWithinIt)
 {

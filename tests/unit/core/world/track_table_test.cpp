@@ -258,9 +258,9 @@ TEST_F(TrackTables, ACooperativeVehicleShowsHowHardItAccelerates)
     vehicle::VehicleLimits limits;
     limits.max_acceleration = 4.0F;
     limits.max_vertical_acceleration = 2.0F;
-    EXPECT_FALSE(table.any_accelerates_harder(limits));
+    EXPECT_FALSE(table.any_accelerates_harder(limits, {}));
     limits.max_acceleration = 3.0F;
-    EXPECT_TRUE(table.any_accelerates_harder(limits));
+    EXPECT_TRUE(table.any_accelerates_harder(limits, {}));
     TrackTable climbing;
     EXPECT_NEAR(shown_by(climbing, climbs, 0.01F), 4.0F - 4.5F * 0.01F / 0.5F, 0.02F);
     TrackTable unsure;
