@@ -157,11 +157,15 @@ Off fly_along(const Flight& flight, const vehicle::VehicleLimits& limits)
         });
 }
 
-/// The largest level change of velocity over half a second [m/s2].
-double most_acceleration(const std::vector<Said>& flown)
+/// The largest change of velocity over half a second, level and vertical [m/s2].
+struct Acceleration {
+    double level = 0.0;
+    double vertical = 0.0;
+};
+Acceleration most_acceleration(const std::vector<Said>& flown)
 {
     constexpr double kOver = 0.5;
-    double most = 0.0;
+    Acceleration most;
     std::size_t before = 0;
     for (const Said& one : flown) {
         while (flown[before].time < one.time - kOver) {
@@ -169,8 +173,19 @@ double most_acceleration(const std::vector<Said>& flown)
         }
         const double took = one.time - flown[before].time;
         if (took > 0.8 * kOver) {
-            most = std::max(most, (one.velocity - flown[before].velocity).head<2>().norm() / took);
+            const Vec change = one.velocity - flown[before].velocity;
+            most.level = std::max(most.level, change.head<2>().norm() / took);
+            most.vertical = std::max(most.vertical, std::abs(change.z()) / took);
         }
+    }
+    return most;
+}
+
+double fastest_descent(const std::vector<Said>& flown)
+{
+    double most = 0.0;
+    for (const Said& one : flown) {
+        most = std::max(most, -one.velocity.z());
     }
     return most;
 }
@@ -194,7 +209,7 @@ TEST_P(Px4Response, Px4AnswersInOffboardAsTheVehicleWithDragDoes)
     EXPECT_LT(against_drag.level, 0.4 * prompt.level);
     EXPECT_LT(against_drag.vertical, 0.3) << prompt.vertical;
     std::printf("%s: off by %.2f m/s (%.2f if it reached every command), at most %.1f m/s2 over half a second\n",
-                GetParam().c_str(), against_drag.level, prompt.level, most_acceleration(flight.flown));
+                GetParam().c_str(), against_drag.level, prompt.level, most_acceleration(flight.flown).level);
 }
 
 INSTANTIATE_TEST_SUITE_P(Recordings, Px4Response,
@@ -225,9 +240,10 @@ TEST_P(ArduCopterResponse, ArduCopterAnswersInGuidedAsItsParametersSay)
     EXPECT_LT(believed.vertical, std::max(0.01, delivered.vertical));
     EXPECT_LT(simulated.vertical, std::max(0.01, delivered.vertical));
     std::printf("%s: off by %.2f m/s level and %.2f m/s vertically (%.2f and %.2f by the parameters as delivered), the "
-                "simulator's by %.2f and %.2f\n",
+                "simulator's by %.2f and %.2f; descends by up to %.1f m/s, changes it by up to %.1f m/s2\n",
                 GetParam().c_str(), believed.level, believed.vertical, delivered.level, delivered.vertical,
-                simulated.level, simulated.vertical);
+                simulated.level, simulated.vertical, fastest_descent(flight.flown),
+                most_acceleration(flight.flown).vertical);
 }
 
 INSTANTIATE_TEST_SUITE_P(Recordings, ArduCopterResponse,
