@@ -23,6 +23,8 @@ constexpr float kFar = 5.0F;
 constexpr float kClearShare = 3.0F;
 /// What was flown before counts better by so much.
 constexpr float kStay = 0.15F;
+/// So many commands are compared with how the aircraft turn.
+constexpr std::uint32_t kTurnLooks = 9;
 /// Commands are alike where they differ by less than this share of the cruise speed.
 constexpr float kAlike = 0.2F;
 /// The manoeuvre is checked over this time at least, and the rest of a climb ends in it [s].
@@ -32,7 +34,10 @@ constexpr float kNone = -std::numeric_limits<float>::infinity();
 
 struct Rated {
     Vec3 command = Vec3::Zero();
+    float clear = kEnough;      ///< nearness, in multiples of the well clear volume
+    float near_mid_air = kFar;  ///< likewise
     float score = kNone;
+    bool seen_turning = false;  ///< also compared with how the aircraft turn
 };
 using Commands = StaticVector<Rated, kCommandsAtMost>;
 
@@ -73,31 +78,42 @@ Commands commands_of(const world::Situation& s, const Vec3& along, const HeightL
     for (const float climb : {0.0F, std::min(up, slant), -std::min(down, slant)}) {
         for (int i = 0; i < kWayCourses; ++i) {
             const float course = 2.0F * kPi * static_cast<float>(i) / static_cast<float>(kWayCourses);
-            commands.unchecked_push_back({detail::command_on(ahead, course, climb, limits), kNone});
+            commands.unchecked_push_back({.command = detail::command_on(ahead, course, climb, limits)});
         }
     }
     if (limits.kind == vehicle::VehicleKind::multirotor) {
-        commands.unchecked_push_back({Vec3::Zero(), kNone});
-        commands.unchecked_push_back({std::min(up, limits.cruise_speed) * Vec3::UnitZ(), kNone});
-        commands.unchecked_push_back({-std::min(down, limits.cruise_speed) * Vec3::UnitZ(), kNone});
+        commands.unchecked_push_back({});
+        commands.unchecked_push_back({.command = std::min(up, limits.cruise_speed) * Vec3::UnitZ()});
+        commands.unchecked_push_back({.command = -std::min(down, limits.cruise_speed) * Vec3::UnitZ()});
     }
     return commands;
 }
 
-/// Least nearness while a command is held: straight on until the height is used up, then level. The time until the
-/// command is flown moves the beginning.
-float nearness_of(const world::Situation& s, const Vec3& command, const HeightLeft& left, const Vec3& position,
-                  const Vec3& velocity, const world::Volume& volume, Seconds span) noexcept
+/// A straight piece of an aircraft's way.
+struct Piece {
+    Vec3 position = Vec3::Zero();  ///< where it begins
+    Vec3 velocity = Vec3::Zero();
+    Seconds from = 0.0F;  ///< after now
+    Seconds span = 0.0F;
+};
+
+/// Least nearness to a piece while a command is held: straight on until the height is used up, then level. The time
+/// until the command is flown moves the beginning.
+float nearness_of(const world::Situation& s, const Vec3& command, const HeightLeft& left, const Piece& piece,
+                  const world::Volume& volume) noexcept
 {
     const Vec3 change = s.own.velocity - command;
     const Seconds lost =
         s.rules.latency + s.limits.velocity_lag + 0.5F * change.head<2>().norm() / s.limits.max_acceleration;
-    const Vec3 begin = s.own.position + change * lost;
     const float climb = command.z();
     const float room = climb > 0.0F ? left.up : left.down;
-    const Seconds climbs = climb != 0.0F ? std::min(span, room / std::abs(climb)) : span;
-    const Vec3 gap = position - begin;
-    const Vec3 closing = velocity - command;
+    const Seconds until_level = climb != 0.0F ? room / std::abs(climb) : std::numeric_limits<float>::infinity();
+    Vec3 begin = s.own.position + change * lost + command * piece.from;
+    begin.z() -= climb * (piece.from - std::min(piece.from, until_level));
+    const Seconds span = piece.span;
+    const Seconds climbs = std::min(span, std::max(0.0F, until_level - piece.from));
+    const Vec3 gap = piece.position - begin;
+    const Vec3 closing = piece.velocity - command;
     const float first = world::nearest(gap, closing, volume, climbs).least;
     if (climbs >= span) {
         return first;
@@ -123,6 +139,7 @@ struct Aircraft {
     world::Volume clear;
     world::Volume near_mid_air;
     float nearness = 0.0F;  ///< if the vehicle flies on as it does
+    world::TurnPieces turning;
 };
 using AircraftList = StaticVector<Aircraft, kMaxAircraft>;
 
@@ -133,7 +150,8 @@ AircraftList aircraft_of(const world::Situation& s, WorkBudget& budget) noexcept
         if (!world::is_aircraft(s, threat) || !budget.spend(units::kAircraftLook)) {
             continue;
         }
-        Aircraft one{&threat, world::well_clear_of(s, threat), world::near_mid_air_of(threat), 0.0F};
+        Aircraft one{&threat, world::well_clear_of(s, threat), world::near_mid_air_of(threat), 0.0F,
+                     world::turning_on(threat)};
         one.nearness = world::nearest(threat.position - s.own.position, threat.velocity - s.own.velocity, one.clear,
                                       world::kAircraftAhead)
                            .least;
@@ -146,51 +164,114 @@ AircraftList aircraft_of(const world::Situation& s, WorkBudget& budget) noexcept
     return list;
 }
 
-bool rate(const world::Situation& s, const Vec3& along, const HeightLeft& left, const Vec3* previous,
-          Commands& commands, WorkBudget& budget) noexcept
-{
-    const float cruise = s.limits.cruise_speed;
-    const AircraftList aircraft = aircraft_of(s, budget);
-    for (Rated& one : commands) {
-        if (!budget.spend(units::kAircraftCommand * static_cast<std::uint32_t>(aircraft.size()))) {
-            return false;
+/// What commands are compared by.
+class Comparison {
+public:
+    Comparison(const world::Situation& s, const Vec3& along, const Vec3* previous, WorkBudget& budget) noexcept
+        : s_(s), along_(along), previous_(previous), left_(height_left(s)), aircraft_(aircraft_of(s, budget)),
+          commands_(commands_of(s, along, left_))
+    {
+    }
+
+    /// Rates all by the courses that any aircraft may take. False where the budget ends.
+    bool rate(WorkBudget& budget) noexcept
+    {
+        for (Rated& one : commands_) {
+            if (!budget.spend(units::kAircraftCommand * static_cast<std::uint32_t>(aircraft_.size()))) {
+                return false;
+            }
+            for (const Aircraft& other : aircraft_) {
+                for (const world::AircraftCourse& course : world::kAircraftCourses) {
+                    meet(one, other,
+                         {other.threat->position, course.of(other.threat->velocity), 0.0F,
+                          course.straight ? world::kAircraftAhead : world::kTurnAhead});
+                }
+            }
+            score(one);
         }
-        float clear = kEnough;
-        float near_mid_air = kFar;
-        for (const Aircraft& other : aircraft) {
-            for (const world::AircraftCourse& course : world::kAircraftCourses) {
-                const Vec3 velocity = course.of(other.threat->velocity);
-                const Seconds span = course.straight ? world::kAircraftAhead : world::kTurnAhead;
-                const auto nearness = [&](const world::Volume& volume) noexcept {
-                    return nearness_of(s, one.command, left, other.threat->position, velocity, volume, span);
-                };
-                clear = std::min(clear, nearness(other.clear));
-                near_mid_air = std::min(near_mid_air, nearness(other.near_mid_air));
+        looks_ = look_units() > 0 ? std::min(kTurnLooks, budget.left() / 2 / look_units()) : 0;
+        return true;
+    }
+
+    /// The best one, rated by how the aircraft turn too. That makes none better, so that the rest need no second look;
+    /// after kTurnLooks of them, or half of the budget, the best one that had it.
+    Rated& best(WorkBudget& budget) noexcept
+    {
+        for (;;) {
+            const bool all_count = looks_ > 0 || !looked_;
+            const auto worth = [all_count](const Rated& one) {
+                return all_count || one.seen_turning ? one.score : kNone;
+            };
+            Rated& best = *std::max_element(commands_.begin(), commands_.end(),
+                                            [&](const Rated& a, const Rated& b) { return worth(a) < worth(b); });
+            if (looks_ == 0 || best.seen_turning || !budget.spend(look_units())) {
+                return best;
+            }
+            --looks_;
+            looked_ = true;
+            best.seen_turning = true;
+            see_turning(best);
+        }
+    }
+
+private:
+    [[nodiscard]] std::uint32_t look_units() const noexcept
+    {
+        const auto turns = [](const Aircraft& other) { return !other.turning.empty(); };
+        return units::kAircraftCommand *
+               static_cast<std::uint32_t>(std::count_if(aircraft_.begin(), aircraft_.end(), turns));
+    }
+
+    void meet(Rated& one, const Aircraft& other, const Piece& piece) const noexcept
+    {
+        one.clear = std::min(one.clear, nearness_of(s_, one.command, left_, piece, other.clear));
+        one.near_mid_air = std::min(one.near_mid_air, nearness_of(s_, one.command, left_, piece, other.near_mid_air));
+    }
+
+    void see_turning(Rated& one) const noexcept
+    {
+        for (const Aircraft& other : aircraft_) {
+            Seconds from = 0.0F;
+            for (const world::TurnPiece& piece : other.turning) {
+                meet(one, other, {piece.position, piece.velocity, from, world::kTurnPiece});
+                from += world::kTurnPiece;
             }
         }
-        one.score = score_of(clear, near_mid_air, (one.command - along).norm() / cruise);
-        if (previous != nullptr && (one.command - *previous).norm() < kAlike * cruise) {
+        score(one);
+    }
+
+    void score(Rated& one) const noexcept
+    {
+        const float cruise = s_.limits.cruise_speed;
+        one.score = score_of(one.clear, one.near_mid_air, (one.command - along_).norm() / cruise);
+        if (previous_ != nullptr && (one.command - *previous_).norm() < kAlike * cruise) {
             one.score += kStay;
         }
     }
-    return true;
-}
+
+    const world::Situation& s_;
+    const Vec3& along_;
+    const Vec3* previous_;
+    HeightLeft left_;
+    AircraftList aircraft_;
+    Commands commands_;
+    std::uint32_t looks_ = 0;  ///< that are left
+    bool looked_ = false;
+};
 
 }  // namespace
 
 std::optional<float> choose_give_way(const world::Situation& s, const Vec3& along, const Vec3* previous,
                                      const Settings& settings, WorkBudget& budget, world::Manoeuvre& out) noexcept
 {
-    const HeightLeft left = height_left(s);
-    Commands commands = commands_of(s, along, left);
-    if (!rate(s, along, left, previous, commands, budget)) {
+    Comparison comparison(s, along, previous, budget);
+    if (!comparison.rate(budget)) {
         return std::nullopt;
     }
     constexpr Seconds kStep = std::max(kPathStep, kChecked / static_cast<float>(kMaxPathPoints - 4));
     constexpr auto kPathUnits = units::kCommandStep * static_cast<std::uint32_t>(kChecked / kStep + 1.0F);
     for (int i = 0; i < kGiveWayTries; ++i) {
-        Rated& best = *std::max_element(commands.begin(), commands.end(),
-                                        [](const Rated& a, const Rated& b) { return a.score < b.score; });
+        Rated& best = comparison.best(budget);
         if (!budget.spend(kPathUnits)) {
             return std::nullopt;
         }

@@ -27,6 +27,8 @@ constexpr Seconds kFloodWindow = 1.0F;
 /// A change of velocity is measured over this long, and counts beyond so many standard deviations.
 constexpr Seconds kShownOver = 0.5F;
 constexpr float kShownBeyond = 4.5F;
+/// A change of course is measured over this long.
+constexpr Seconds kTurnOver = 1.5F;
 /// An aircraft that moved by more is not at the same place to 0.01 m, as links say it [m].
 constexpr float kMoved = 0.05F;
 
@@ -62,6 +64,16 @@ bool all_finite(const TrackMeasurement& m) noexcept
         }
     }
     return hash;
+}
+
+/// Change of the level course from one velocity to another, less one standard deviation of it [rad].
+[[gnu::cold, gnu::noinline]] float turned(const Vec3& from, const Vec3& to, float sigma) noexcept
+{
+    constexpr float kRootOfTwo = 1.4142136F;
+    constexpr float kSlow = 1.0F;  // [m/s]
+    const float angle = std::atan2(from.x() * to.y() - from.y() * to.x(), from.head<2>().dot(to.head<2>()));
+    const float deviation = kRootOfTwo * sigma / std::max(to.head<2>().norm(), kSlow);
+    return std::copysign(std::max(0.0F, std::abs(angle) - deviation), angle);
 }
 
 }  // namespace
@@ -126,7 +138,8 @@ TrackStatus TrackTable::admit(const TrackMeasurement& m, const vehicle::VehicleS
                    m.cooperative,
                    0,
                    m.manned,
-                   m.half_height};
+                   m.half_height,
+                   0.0F};
     entry.velocity_then = entry.track.velocity;
     entry.changing = m.has_velocity ? 0 : kUnchanged;
     entry.said = fingerprint(m);
@@ -141,7 +154,7 @@ void TrackTable::move(const Vec3& by) noexcept
 }
 
 /// Small in flash rather than fast: once a report.
-[[gnu::cold, gnu::noinline]] void TrackTable::note_acceleration(Entry& e, const TrackMeasurement& m) const noexcept
+[[gnu::cold, gnu::noinline]] void TrackTable::note_velocity(Entry& e, const TrackMeasurement& m) const noexcept
 {
     constexpr Seconds kMaxChanging = 60.0F;
     if (e.changing == kUnchanged) {
@@ -151,13 +164,18 @@ void TrackTable::move(const Vec3& by) noexcept
     }
     const Seconds span = std::min(1e-3F * static_cast<float>(e.changing) + (m.stamp - e.track.stamp), kMaxChanging);
     e.changing = static_cast<std::uint16_t>(std::lround(1e3F * span));
-    if (!m.cooperative || !m.has_velocity || span < kShownOver) {
+    if ((!m.cooperative && !m.manned) || !m.has_velocity || span < (m.manned ? kTurnOver : kShownOver)) {
         return;
     }
-    const Vec3 change = m.velocity - e.velocity_then;
-    const float most = std::max(change.head<2>().norm(), std::abs(change.z()));
-    const float shown = std::min((most - kShownBeyond * m.sigma_velocity) / span, settings_.reach_acceleration);
-    e.track.shown_acceleration = std::max(e.track.shown_acceleration, shown);
+    if (m.manned) {
+        e.track.turn_rate = 0.5F * (e.track.turn_rate + turned(e.velocity_then, m.velocity, m.sigma_velocity) / span);
+    }
+    if (m.cooperative) {
+        const Vec3 change = m.velocity - e.velocity_then;
+        const float most = std::max(change.head<2>().norm(), std::abs(change.z()));
+        const float shown = std::min((most - kShownBeyond * m.sigma_velocity) / span, settings_.reach_acceleration);
+        e.track.shown_acceleration = std::max(e.track.shown_acceleration, shown);
+    }
     e.velocity_then = m.velocity;
     e.changing = 0;
 }
@@ -171,7 +189,7 @@ void TrackTable::move(const Vec3& by) noexcept
 
 void TrackTable::filter(Entry& e, const TrackMeasurement& m) noexcept
 {
-    note_acceleration(e, m);
+    note_velocity(e, m);
     const Seconds dt = m.stamp - e.track.stamp;
     const float q = settings_.process_acceleration * settings_.process_acceleration;
     const Vec3 predicted = e.track.position + e.track.velocity * dt;
@@ -191,6 +209,7 @@ void TrackTable::filter(Entry& e, const TrackMeasurement& m) noexcept
         Entry fresh = start(m);
         fresh.track.instance = e.track.instance;
         fresh.track.shown_acceleration = e.track.shown_acceleration;
+        fresh.track.turn_rate = e.track.turn_rate;
         fresh.velocity_then = e.velocity_then;
         fresh.changing = e.changing;
         e = fresh;
@@ -216,9 +235,21 @@ void TrackTable::filter(Entry& e, const TrackMeasurement& m) noexcept
     e.variance_position = vpp;
     e.covariance = vpv;
     e.variance_velocity = vvv;
-    e.track = {
-        m.id,           e.track.shown_acceleration, m.stamp,  position,      velocity,         m.radius, std::sqrt(vpp),
-        std::sqrt(vvv), m.max_acceleration,         m.source, m.cooperative, e.track.instance, m.manned, m.half_height};
+    e.track = {m.id,
+               e.track.shown_acceleration,
+               m.stamp,
+               position,
+               velocity,
+               m.radius,
+               std::sqrt(vpp),
+               std::sqrt(vvv),
+               m.max_acceleration,
+               m.source,
+               m.cooperative,
+               e.track.instance,
+               m.manned,
+               m.half_height,
+               e.track.turn_rate};
     e.said = fingerprint(m);
     e.sightings = static_cast<std::uint16_t>(std::min<unsigned>(e.sightings + 1U, 0xFFFFU));
 }

@@ -86,6 +86,9 @@ struct TrackTableSettings {
 /// over half a second or more, less 4.5 standard deviations of one, which noise exceeds in 0.6 % of cases at most; no
 /// more than `reach_acceleration`. What was shown once counts for as long as the track is kept.
 ///
+/// A manned track's reported velocities show how it turns (Track::turn_rate): the change of course over 1.5 s or more,
+/// less one standard deviation of it, and the mean of that and what was shown before.
+///
 /// Memory: kMaxTracks * (2 * sizeof(Track) + 40) bytes. Nothing is dropped without a count.
 class TrackTable {
 public:
@@ -154,7 +157,7 @@ private:
     [[nodiscard]] static bool repeats(const Said& said, const TrackMeasurement& m) noexcept;
     [[nodiscard]] Entry start(const TrackMeasurement& m) const noexcept;
     void filter(Entry& entry, const TrackMeasurement& m) noexcept;
-    void note_acceleration(Entry& entry, const TrackMeasurement& m) const noexcept;
+    void note_velocity(Entry& entry, const TrackMeasurement& m) const noexcept;
     [[nodiscard]] bool fit(const Entry& entry, const TrackMeasurement& m, float& cost) const noexcept;
     [[nodiscard]] Match match(const TrackMeasurement& m, const vehicle::VehicleState& own,
                               TimePoint now) const noexcept;

@@ -126,6 +126,27 @@ Volume well_clear_of(const Situation& situation, const Threat& aircraft) noexcep
 
 Volume near_mid_air_of(const Threat& aircraft) noexcept { return grown(aircraft, kNearMidAir); }
 
+TurnPieces turning_on(const Threat& aircraft) noexcept
+{
+    constexpr float kTurns = 0.015F;  // [rad/s]
+    TurnPieces pieces;
+    const float rate = aircraft.track != nullptr ? aircraft.track->turn_rate : 0.0F;
+    if (std::abs(rate) < kTurns) {
+        return pieces;
+    }
+    const float half = 0.5F * rate * kTurnPiece;
+    const float chord = std::sin(half) / half;
+    // From one chord to the next, and to the first one.
+    const AircraftCourse turn{std::cos(2.0F * half), std::sin(2.0F * half)};
+    const AircraftCourse first{chord * std::cos(half), chord * std::sin(half)};
+    TurnPiece piece{aircraft.position, first.of(aircraft.velocity)};
+    while (pieces.try_push_back(piece)) {
+        piece.position += piece.velocity * kTurnPiece;
+        piece.velocity = turn.of(piece.velocity);
+    }
+    return pieces;
+}
+
 namespace {
 
 /// Whether even straight towards each other they do not come near within kAircraftAhead.
@@ -156,8 +177,8 @@ struct Meeting {
     }
 };
 
-/// On the courses that are not straight on: whether one of them leads into `volume`.
-bool meets_turning(const detail::RoutePieces& pieces, const Threat& aircraft, const Volume& volume,
+/// On the courses that are not straight on.
+void meets_turning(const detail::RoutePieces& pieces, const Threat& aircraft, const Volume& volume,
                    Meeting& out) noexcept
 {
     for (const detail::WayPiece& piece : pieces) {
@@ -170,7 +191,25 @@ bool meets_turning(const detail::RoutePieces& pieces, const Threat& aircraft, co
             }
         }
     }
-    return out.loss >= 0.0F;
+}
+
+/// On its way if it goes on turning.
+void meets_turning_on(const detail::RoutePieces& pieces, const Threat& aircraft, const Volume& volume,
+                      Meeting& out) noexcept
+{
+    Seconds begin = 0.0F;
+    for (const TurnPiece& chord : turning_on(aircraft)) {
+        for (const detail::WayPiece& piece : pieces) {
+            const Seconds from = std::max(begin, piece.start);
+            const Seconds span = std::min(begin + kTurnPiece, piece.end) - from;
+            if (span > 0.0F) {
+                const Vec3 its = chord.position + chord.velocity * (from - begin);
+                const Vec3 own = piece.own.position + piece.own.velocity * (from - piece.start);
+                out.note(first_inside(its - own, chord.velocity - piece.own.velocity, volume, span), from, Alert::low);
+            }
+        }
+        begin += kTurnPiece;
+    }
 }
 
 /// Straight on: the first instant nearest of all, if it is nearer than `wanted`; its time is below 0 else.
@@ -203,7 +242,9 @@ Meeting meeting_with(const Situation& situation, const detail::RoutePieces& piec
     const Volume near_mid_air = near_mid_air_of(aircraft);
     const Volume larger{clear.radius * kClearAgain, clear.height * kClearAgain};
     Meeting out;
-    const bool may_turn = meets_turning(pieces, aircraft, gives_way ? larger : near_mid_air, out);
+    meets_turning_on(pieces, aircraft, gives_way ? larger : clear, out);
+    meets_turning(pieces, aircraft, gives_way ? larger : near_mid_air, out);
+    const bool may_turn = out.loss >= 0.0F;
     const Nearness least = meets_ahead(pieces, aircraft, clear, gives_way ? kClearAgain : 1.0F, out);
     const Vec3 now = aircraft.position - situation.own.position;
     const Vec3 change = aircraft.velocity - pieces[0].own.velocity;

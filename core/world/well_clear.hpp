@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "core/base/static_vector.hpp"
 #include "core/world/conflict.hpp"
 
 // Aircraft with people aboard, and the volumes that are kept clear of them (ASTM F3442).
@@ -57,6 +58,17 @@ inline constexpr std::array kAircraftCourses{AircraftCourse{1.0F, 0.0F, true}, A
 /// Courses that are not straight on count for so long: at 3 deg/s an aircraft turns by 45 degrees in 15 s [s].
 inline constexpr Seconds kTurnAhead = 25.0F;
 
+/// A piece of the way of an aircraft that turns: straight on for kTurnPiece.
+struct TurnPiece {
+    Vec3 position = Vec3::Zero();  ///< where it begins [m]
+    Vec3 velocity = Vec3::Zero();  ///< [m/s]
+};
+inline constexpr Seconds kTurnPiece = 10.0F;
+using TurnPieces = StaticVector<TurnPiece, 4>;
+/// The way of an aircraft that goes on turning as its reports show (Track::turn_rate), as chords of its circle: their
+/// ends are on it. Empty where it turns by less than 0.86 deg/s. O(1).
+[[nodiscard]] TurnPieces turning_on(const Threat& aircraft) noexcept;
+
 /// Aircraft are looked for this far ahead: to climb or descend by 76 m takes 25 s at 3 m/s [s].
 inline constexpr Seconds kAircraftAhead = 60.0F;
 
@@ -67,9 +79,10 @@ inline constexpr Seconds kAircraftAhead = 60.0F;
 [[nodiscard]] Volume near_mid_air_of(const Threat& aircraft) noexcept;
 
 /// Whether aircraft come too near to the way, and how near; `out` is the first loss of all. Too near is: straight on,
-/// within kAircraftAhead into the well clear volume, and nearer than at present; on another course, within kTurnAhead
-/// into the volume of a near mid-air collision. A vehicle that gives way goes on with it as long as any course leads
-/// into a well clear volume a tenth larger. Where the budget runs out an aircraft is too near now. O(pieces * tracks).
+/// within kAircraftAhead into the well clear volume, and nearer than at present; turning on, into it at any time; on
+/// another course, within kTurnAhead into the volume of a near mid-air collision. A vehicle that gives way goes on with
+/// it as long as any course leads into a well clear volume a tenth larger. Where the budget runs out an aircraft is too
+/// near now. O(pieces * tracks).
 [[nodiscard]] Alert aircraft_conflict(const Situation& situation, const Way& way, bool gives_way, WorkBudget& budget,
                                       Conflict& out) noexcept;
 

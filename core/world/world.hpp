@@ -49,6 +49,7 @@ struct Track {
     std::uint8_t instance = 0;  ///< id and instance together are unique in a table
     bool manned = false;        ///< people aboard, as far as is reported: FlightRules::well_clear
     float half_height = 0.0F;   ///< uncertainty of the height, all of it, beside the sphere's growth [m]
+    float turn_rate = 0.0F;     ///< of a manned one, as its reports show it, positive from x to y [rad/s]
 };
 
 struct Obstacle {

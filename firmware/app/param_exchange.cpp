@@ -57,11 +57,11 @@ void ParamExchange::believe(const link::ReportedLimits& reported, Outbox& outbox
     parameters_.believe(reported);
     has_new_limits_ = true;
     const vehicle::VehicleLimits& limits = configuration().limits;
-    const auto say = [&outbox](Param param, float was, float is) {
+    const auto say = [&outbox, this](Param param, float was, float is) {
         if (is != was) {
             Text text;
             text << "jink: " << param_table()[static_cast<std::size_t>(param)].name << " counts as " << is
-                 << ", the autopilot's";
+                 << (is == parameters_.get(param) ? " again" : ", the autopilot's");
             outbox.say(link::Severity::notice, text.view());
         }
     };

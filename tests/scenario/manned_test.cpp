@@ -248,6 +248,20 @@ TEST(Manned, NearMidAirCollisionsAreAvoidedWhereTheyCanBe)
     }
 }
 
+/// Near mid-air collisions before turn rates were estimated.
+TEST(Manned, TurnsThatReportsShowAreReckonedWith)
+{
+    const fs::path folder(JINK_ENCOUNTER_MODELS);
+    const std::vector<fs::path> files = models();
+    SKIP_WITHOUT_MODELS(files)
+    for (const auto& [name, seed] : {std::pair<const char*, std::uint64_t>{"uncor_1200only_fwse_v1p2.txt", 747},
+                                     {"uncor_1200only_rotorcraft_v1p2.txt", 990}}) {
+        const MannedResult r = fly_manned(EncounterModel::load(folder / name), MannedSensor::adsb, seed, {}, {});
+        EXPECT_TRUE(r.near_alone) << name;
+        EXPECT_FALSE(r.near) << name;
+    }
+}
+
 TEST(Manned, WithoutTheRuleTheyAreNot)
 {
     const std::vector<fs::path> files = models();

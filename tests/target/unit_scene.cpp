@@ -101,6 +101,7 @@ void UnitScene::scene(Work work) noexcept
             track.manned = true;
             track.position = own_.position + within(25.0F * spread).cwiseProduct(Vec3(1.0F, 1.0F, 0.1F));
             track.velocity *= 10.0F;
+            track.turn_rate = below(2) == 0 ? 0.0F : random_.uniform(-0.3F, 0.3F);
         }
         tracks_.unchecked_push_back(track);
     }

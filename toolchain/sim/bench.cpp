@@ -39,7 +39,7 @@ app::Parameters parameters_of(const BenchSetup& setup)
 Bench::Bench(hal::SerialPort& port, hal::Watchdog& watchdog, const BenchSetup& setup)
     : endpoint_({.system_id = setup.system}),
       coprocessor_(std::make_unique<app::Coprocessor>(endpoint_, port, watchdog, parameters_of(setup), setup.bus)),
-      planner_(setup.planner), start_(setup.start)
+      planner_(setup.planner), timed_(setup.timed), start_(setup.start)
 {
     if (setup.board.clock != 0) {
         if (setup.cloud != nullptr) {
@@ -63,9 +63,17 @@ void Bench::step(TimePoint now)
 {
     const std::uint32_t plans = coprocessor_->supervisor_diagnostics().plans;
     const std::uint32_t found = coprocessor_->supervisor_diagnostics().plans_found;
-    const double began = cpu_microseconds();
+    const double began = timed_ ? cpu_microseconds() : 0.0;
     const app::StepReport report = coprocessor_->step(now);
-    const double took = cpu_microseconds() - began;
+    const bool planned = coprocessor_->supervisor_diagnostics().plans != plans;
+    if (timed_) {
+        const double took = cpu_microseconds() - began;
+        steps_.note(took);
+        if (planned) {
+            plan_steps_.note(took);
+            plan_steps_.keep(took);
+        }
+    }
     to_answer_.note(report.guidance);
     chosen_.reset();
     if (report.guidance.new_manoeuvre && coprocessor_->flying() != nullptr) {
@@ -75,13 +83,7 @@ void Bench::step(TimePoint now)
         foreign_plans_ += coprocessor_->supervisor_diagnostics().plans - plans;
         hand_over_settings();
     }
-    steps_.note(took);
-    if (coprocessor_->supervisor_diagnostics().plans != plans) {
-        plan_steps_.note(took);
-        plan_steps_.keep(took);
-    }
-    take_notes(report, now, coprocessor_->supervisor_diagnostics().plans != plans,
-               coprocessor_->supervisor_diagnostics().plans_found != found);
+    take_notes(report, now, planned, coprocessor_->supervisor_diagnostics().plans_found != found);
 }
 
 void Bench::take_notes(const app::StepReport& report, TimePoint now, bool planned, bool found)

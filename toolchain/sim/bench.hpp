@@ -78,10 +78,11 @@ struct BenchSetup {
     link::SensorBus* bus = nullptr;    ///< outlives the bench
     hal::SerialPort* cloud = nullptr;  ///< a LiDAR's line; outlives the bench
     Board board;
+    bool timed = false;  ///< steps are timed
     TimePoint start{0};  ///< time 0 of Inside::decisions and Inside::work on its clock
 };
 
-/// The co-processor in this process, with a stopwatch.
+/// The co-processor in this process; its steps are timed where BenchSetup says so.
 class Bench {
 public:
     /// @param port, watchdog  outlive the bench
@@ -112,6 +113,7 @@ private:
     std::unique_ptr<app::PlanMemory> plan_memory_;
     std::unique_ptr<app::Coprocessor> coprocessor_;
     PlannerKind planner_;
+    bool timed_;
     std::uint32_t generation_ = 0;
     unsigned foreign_plans_ = 0;
     AnswerCounter to_answer_;

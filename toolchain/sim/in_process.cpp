@@ -127,6 +127,7 @@ Record fly_in_process(const Scenario& given, const Timing& timing, std::ostream*
                  .parameters = {},
                  .cloud = lidar.get(),
                  .board = scenario.board,
+                 .timed = scenario.timed,
                  .start = {kClockStart}});
     return fly(scenario, timing, clock, *cable, bench, tap, lidar.get());
 }
@@ -149,6 +150,7 @@ Record fly_through_tunnel(const Scenario& scenario)
                  .bus = &line->bus(),
                  .cloud = lidar.get(),
                  .board = scenario.board,
+                 .timed = scenario.timed,
                  .start = {kClockStart}});
     Record record = fly(scenario, Timing{}, clock, *line, bench, tap, lidar.get());
     record.transport = "tunnel";

@@ -60,6 +60,7 @@ std::vector<Scenario> load_all(const std::vector<std::string>& files, bool real_
     for (const std::string& file : files) {
         scenarios.push_back(load_scenario(file));
         scenarios.back().board = board;
+        scenarios.back().timed = true;
         if (const std::string reason = no_input_for(scenarios.back()); real_time && !reason.empty()) {
             std::cout << scenarios.back().name << ": left out, " << reason << "\n";
             scenarios.pop_back();
@@ -95,7 +96,8 @@ std::vector<ReportedFlight> fly_random(std::uint64_t first, unsigned count)
 {
     std::vector<ReportedFlight> flights(count);
     in_parallel(flights.size(), 2, [&](std::size_t k) {
-        const Scenario scenario = random_scenario(first + k);
+        Scenario scenario = random_scenario(first + k);
+        scenario.timed = true;
         flights[k] = report_on(scenario, fly_in_process(scenario), true);
     });
     return flights;
@@ -249,6 +251,7 @@ int crowd(const Options& options)
     for (unsigned i = 0; i < options.count; ++i) {
         Scenario scenario = crowded_scenario(options.seed + i);
         scenario.board = options.board;
+        scenario.timed = true;
         scenario.parameters = variant.parameters;
         flights.push_back(report_on(scenario, fly_recorded(scenario, options.steps), false));
     }

@@ -138,6 +138,7 @@ struct Scenario {
     std::optional<LidarSensor> lidar;
     std::map<std::string, double> parameters;  ///< set at the start, verified
     Board board;
+    bool timed = false;  ///< its steps are timed, which takes a fifth of a flight
     Faults faults;
     Expectation expect;
 };

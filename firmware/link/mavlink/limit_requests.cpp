@@ -2,7 +2,6 @@
 #include "firmware/link/mavlink/limit_requests.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <span>
 
 namespace jink::link::mavlink {

@@ -62,7 +62,7 @@ TEST_F(CoprocessorLimits, TheLowerOneHoldsAndOfLagsTheLonger)
     EXPECT_EQ(limits().max_descent, 3.0F);
     EXPECT_EQ(tell("WPNAV_ACCEL", 250.0F), Texts{}) << "nothing new";
     EXPECT_EQ(tell("WPNAV_ACCEL", 900.0F),
-              (Texts{"jink: VEH_ACC counts as 5.0, the autopilot's", "jink: VEH_LAG counts as 1.9, the autopilot's"}))
+              (Texts{"jink: VEH_ACC counts as 5.0 again", "jink: VEH_LAG counts as 1.9, the autopilot's"}))
         << "it flies harder than the parameter allows, and with the same jerk later";
     EXPECT_EQ(limits().max_acceleration, 5.0F);
 }

@@ -146,6 +146,69 @@ TEST(AircraftConflict, AnAircraftNearbyMayTurnThisWay)
     EXPECT_EQ(OneAircraft(Vec3(1200, 2500, 100), Vec3(-60, 0, 0)).look(), Alert::none);
 }
 
+/// Where an aircraft is that turns at a steady rate, in double.
+Eigen::Vector3d on_circle(const Track& track, double t)
+{
+    const auto rate = static_cast<double>(track.turn_rate);
+    const double x = rate != 0.0 ? std::sin(rate * t) / rate : t;
+    const double y = rate != 0.0 ? (1.0 - std::cos(rate * t)) / rate : 0.0;
+    const Eigen::Vector3d v = track.velocity.cast<double>();
+    return track.position.cast<double>() + Eigen::Vector3d(x * v.x() - y * v.y(), y * v.x() + x * v.y(), t * v.z());
+}
+
+TEST(TurningOn, ChordsEndOnTheCircle)
+{
+    const std::uint64_t seed = seed_of(0x3444);
+    Random random(seed);
+    for (int i = 0; i < case_count(5000); ++i) {
+        OneAircraft one(in_cube(random, 3000.0F), in_cube(random, 80.0F));
+        Track& track = one.scene.tracks[0];
+        track.turn_rate = random.uniform(0.015F, 0.5F) * (random.below(2) == 0 ? 1.0F : -1.0F);
+        const Situation s = one.scene.situation();
+        double t = 0.0;
+        for (const TurnPiece& piece : turning_on(of_kind(s.threats, ThreatKind::track)[0])) {
+            const Eigen::Vector3d begin = piece.position.cast<double>();
+            const Eigen::Vector3d end = begin + static_cast<double>(kTurnPiece) * piece.velocity.cast<double>();
+            ASSERT_LT((begin - on_circle(track, t)).norm(), 0.01) << "case " << i << ", seed " << seed;
+            t += static_cast<double>(kTurnPiece);
+            ASSERT_LT((end - on_circle(track, t)).norm(), 0.01) << "case " << i << ", seed " << seed;
+        }
+        ASSERT_EQ(t, 40.0);
+        track.turn_rate *= 0.014F / std::abs(track.turn_rate);
+        const Situation straight = one.scene.situation();
+        ASSERT_TRUE(turning_on(of_kind(straight.threats, ThreatKind::track)[0]).empty());
+    }
+}
+
+/// Whoever flies on along a circle into the well clear volume within 40 s is seen to do so.
+TEST(TurningOn, NoneThatComesNearIsOverlooked)
+{
+    const std::uint64_t seed = seed_of(0x3445);
+    Random random(seed);
+    int by_turn_alone = 0;
+    const int cases = case_count(5000);
+    for (int i = 0; i < cases; ++i) {
+        OneAircraft one(Vec3(0, 0, 100) + in_cube(random, 3000.0F).cwiseProduct(Vec3(1.0F, 1.0F, 0.03F)),
+                        in_cube(random, 60.0F).cwiseProduct(Vec3(1.0F, 1.0F, 0.03F)));
+        Track& track = one.scene.tracks[0];
+        track.turn_rate = random.uniform(0.015F, 0.1F) * (random.below(2) == 0 ? 1.0F : -1.0F);
+        // A chord of 10 s leaves its circle by so much.
+        const float off = track.velocity.head<2>().norm() * std::abs(track.turn_rate) * kTurnPiece * kTurnPiece / 8.0F;
+        double least = 1e30;
+        for (int k = 0; k <= 400; ++k) {
+            const Eigen::Vector3d gap = on_circle(track, 0.1 * k) - Eigen::Vector3d(1.2 * k, 0.0, 100.0);
+            least = std::min(
+                least, std::max(gap.head<2>().norm() / static_cast<double>(609.6F - off), std::abs(gap.z()) / 76.2));
+        }
+        if (least < 0.999) {
+            ASSERT_NE(one.look(), Alert::none) << "case " << i << ", seed " << seed;
+            track.turn_rate = 0.0F;
+            by_turn_alone += one.look() == Alert::none ? 1 : 0;
+        }
+    }
+    EXPECT_GT(by_turn_alone, cases / 50) << "straight prediction would see them all";
+}
+
 TEST(AircraftConflict, OnlyOfMannedAircraftAndWhereTheRuleIsOn)
 {
     OneAircraft drone(Vec3(3000, 0, 100), Vec3(-60, 0, 0));

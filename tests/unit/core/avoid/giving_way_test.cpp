@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/avoid/give_way.hpp"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "core/base/random.hpp"
@@ -90,6 +92,57 @@ TEST(GivingWay, KeepsWellClearOfAnAircraftAndGoesBack)
         EXPECT_LT((f.scene.own.position - Vec3(f.scene.own.position.x(), 0, 200)).norm(), 2.0F) << "on its leg again";
         EXPECT_EQ(supervisor.diagnostics().gave_way, 1U);
     }
+}
+
+/// Whether well clear is lost beside an aircraft that flies along a circle through the vehicle's place after 30 to 60
+/// s.
+bool is_lost_beside_a_turn(std::uint64_t seed, bool shown)
+{
+    constexpr Seconds kTick = 0.1F;
+    Random random(seed);
+    const Seconds meets = random.uniform(30.0F, 60.0F);
+    const float rate = random.uniform(0.03F, 0.1F) * (random.below(2) == 0 ? 1.0F : -1.0F);
+    const float course = random.uniform(-kPi, kPi);
+    const float speed = random.uniform(25.0F, 60.0F);
+    HighFlight f;
+    Vec3 velocity(speed * std::cos(course), speed * std::sin(course), 0.0F);
+    const auto turn = [&](float by) { velocity += by * kTick * Vec3(-velocity.y(), velocity.x(), 0.0F); };
+    Vec3 from_here(12.0F * meets, 0.0F, 0.0F);
+    for (Seconds t = 0.0F; t < meets; t += kTick) {
+        from_here -= velocity * kTick;
+        turn(-rate);
+    }
+    if (from_here.head<2>().norm() < 700.0F) {
+        return false;
+    }
+    f.aircraft(from_here, velocity);
+    FakeMethod method = never();
+    Supervisor supervisor(quick(), method);
+    bool in_control = false;
+    bool lost = false;
+    for (Seconds t = 0.0F; t < meets + 20.0F; t += kTick) {
+        f.scene.tracks[0].velocity = velocity;
+        f.scene.tracks[0].turn_rate = shown ? rate : 0.0F;
+        const Guidance g = f.update(supervisor, in_control);
+        in_control = g.wants_control;
+        const world::Way way = world::way_of(f.scene.situation());
+        f.pass(in_control ? g.velocity : Vec3(way.direction * way.speed), kTick);
+        turn(rate);
+        lost = lost || f.nearness(kVolume) < 1.0F;
+    }
+    return lost;
+}
+
+TEST(GivingWay, HowAnAircraftTurnsIsReckonedWith)
+{
+    int blind = 0;
+    int seeing = 0;
+    for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+        blind += is_lost_beside_a_turn(seed, false) ? 1 : 0;
+        seeing += is_lost_beside_a_turn(seed, true) ? 1 : 0;
+    }
+    EXPECT_GT(blind, 20) << "of 100";
+    EXPECT_LT(2 * seeing, blind);
 }
 
 TEST(GivingWay, NotToDronesAndNotWhereTheRuleIsOff)

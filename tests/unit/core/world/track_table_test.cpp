@@ -295,6 +295,52 @@ TEST_F(TrackTables, NoiseOfAVelocityIsNoAcceleration)
     EXPECT_LE(beyond, 2) << "of 200 in 10 s each by more than 1 m/s2";
 }
 
+/// The turn rate that an aircraft shows which reports once a second.
+float turn_shown_by(float speed, float rate, float sigma, Random& random, bool manned = true, int reports = 12)
+{
+    TrackTable table;
+    Vec3 place(900.0F, 0.0F, 30.0F);
+    TimePoint at = kTime;
+    for (int i = 0; i < reports; ++i) {
+        const float course = rate * static_cast<float>(i);
+        const Vec3 velocity(speed * std::cos(course), speed * std::sin(course), 1.0F);
+        TrackMeasurement m = sighting(7, place, at);
+        m.velocity = velocity + sigma * Vec3(random.normal(), random.normal(), random.normal());
+        m.sigma_position = 3.0F;
+        m.sigma_velocity = sigma;
+        m.manned = manned;
+        EXPECT_LE(table.update(m, {}, at), TrackStatus::created);
+        place += velocity;
+        at = at + 1.0F;
+    }
+    const auto tracks = table.snapshot(at);
+    EXPECT_EQ(tracks.size(), 1U);
+    return tracks.front().turn_rate;
+}
+
+TEST_F(TrackTables, AnAircraftShowsHowItTurns)
+{
+    Random random(3);
+    for (const float rate : {0.6F, 0.2F, 0.052F, -0.052F, -0.2F, -0.6F}) {
+        EXPECT_NEAR(turn_shown_by(50.0F, rate, 0.01F, random), rate, 0.04F * std::abs(rate)) << rate;
+        EXPECT_EQ(turn_shown_by(50.0F, rate, 0.01F, random, false), 0.0F) << "a drone";
+    }
+    EXPECT_EQ(turn_shown_by(0.0F, 0.0F, 0.01F, random, true, 1), 0.0F) << "one report";
+}
+
+TEST_F(TrackTables, NoiseOfAVelocityIsHardlyATurn)
+{
+    Random random(12);
+    int beyond = 0;
+    double error = 0.0;
+    for (int i = 0; i < 500; ++i) {
+        beyond += std::abs(turn_shown_by(40.0F, 0.0F, 0.5F, random)) > 0.015F ? 1 : 0;
+        error += static_cast<double>(turn_shown_by(40.0F, 0.052F, 0.5F, random)) / 500.0;
+    }
+    EXPECT_LE(beyond, 5) << "of 500 that fly straight on at 40 m/s";
+    EXPECT_NEAR(error, 0.052, 0.012) << "3 deg/s, less what noise explains";
+}
+
 TEST_F(TrackTables, AVelocityThatComesLaterIsNoAcceleration)
 {
     TrackMeasurement m = sighting(7, Vec3(50.0F, 0.0F, 30.0F));
