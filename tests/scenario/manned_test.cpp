@@ -254,11 +254,15 @@ TEST(Manned, TurnsThatReportsShowAreReckonedWith)
     const fs::path folder(JINK_ENCOUNTER_MODELS);
     const std::vector<fs::path> files = models();
     SKIP_WITHOUT_MODELS(files)
-    for (const auto& [name, seed] : {std::pair<const char*, std::uint64_t>{"uncor_1200only_fwse_v1p2.txt", 747},
+    const char* const single_engine = "uncor_1200only_fwse_v1p2.txt";
+    for (const auto& [name, seed] : {std::pair<const char*, std::uint64_t>{single_engine, 747},
+                                     {single_engine, 1182},
+                                     {single_engine, 1983},
+                                     {single_engine, 2412},
                                      {"uncor_1200only_rotorcraft_v1p2.txt", 990}}) {
         const MannedResult r = fly_manned(EncounterModel::load(folder / name), MannedSensor::adsb, seed, {}, {});
-        EXPECT_TRUE(r.near_alone) << name;
-        EXPECT_FALSE(r.near) << name;
+        EXPECT_TRUE(r.near_alone) << name << ", " << seed;
+        EXPECT_FALSE(r.near) << name << ", " << seed;
     }
 }
 
