@@ -200,6 +200,7 @@ public:
         for (;;) {
             const bool all_count = looks_ > 0 || !looked_;
             const auto worth = [all_count](const Rated& one) {
+                // NOLINTNEXTLINE(bugprone-narrowing-conversions,cppcoreguidelines-narrowing-conversions): both float
                 return all_count || one.seen_turning ? one.score : kNone;
             };
             Rated& best = *std::max_element(commands_.begin(), commands_.end(),
