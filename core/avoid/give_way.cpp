@@ -27,8 +27,10 @@ constexpr float kStay = 0.15F;
 constexpr std::uint32_t kTurnLooks = 9;
 /// Commands are alike where they differ by less than this share of the cruise speed.
 constexpr float kAlike = 0.2F;
-/// The manoeuvre is checked over this time at least, and the rest of a climb ends in it [s].
+/// The manoeuvre is checked over this time, a climb or descent for less where the height is used up before, and over
+/// this at least [s].
 constexpr Seconds kChecked = 8.0F;
+constexpr Seconds kCheckedAtLeast = 2.0F;
 constexpr Seconds kPathStep = 0.25F;
 constexpr float kNone = -std::numeric_limits<float>::infinity();
 
@@ -41,15 +43,30 @@ struct Rated {
 };
 using Commands = StaticVector<Rated, kCommandsAtMost>;
 
-/// How far the vehicle can climb and descend [m].
+/// How far the vehicle can climb and descend [m]. What is done once in a choice is compiled for size.
 struct HeightLeft {
     float up = std::numeric_limits<float>::infinity();
     float down = std::numeric_limits<float>::infinity();
+    Seconds stop = 0.0F;  ///< what the final check adds to a command, as time at its speed
+
+    [[nodiscard]] float along(const Vec3& command) const noexcept { return command.z() > 0.0F ? up : down; }
+    /// No command is offered that would use it up sooner.
+    [[nodiscard]] Seconds lasts() const noexcept { return kCheckedAtLeast + stop; }
 };
 
-HeightLeft height_left(const world::Situation& s) noexcept
+/// A stop; for a wing as much time straight on.
+Seconds stop_of(const vehicle::VehicleLimits& limits) noexcept
+{
+    const float speed = std::max(limits.max_climb, limits.max_descent);
+    return limits.kind == vehicle::VehicleKind::multirotor
+               ? 2.0F * limits.velocity_lag + 0.5F * speed / limits.max_vertical_acceleration
+               : vehicle::stopping_time(Vec3(limits.cruise_speed, 0.0F, speed), limits);
+}
+
+[[gnu::cold, gnu::noinline]] HeightLeft height_left(const world::Situation& s) noexcept
 {
     HeightLeft left;
+    left.stop = stop_of(s.limits);
     for (const world::Threat& bound : s.threats) {
         if (!bound.is_bound()) {
             break;
@@ -65,13 +82,14 @@ HeightLeft height_left(const world::Situation& s) noexcept
     return left;
 }
 
-Commands commands_of(const world::Situation& s, const Vec3& along, const HeightLeft& left) noexcept
+[[gnu::cold, gnu::noinline]] Commands commands_of(const world::Situation& s, const Vec3& along,
+                                                  const HeightLeft& left) noexcept
 {
     const vehicle::VehicleLimits& limits = s.limits;
     constexpr float kHalfAndHalf = 0.70710678F;
     const float slant = kHalfAndHalf * limits.cruise_speed;
-    const float up = std::min(limits.max_climb, left.up / kChecked);
-    const float down = std::min(limits.max_descent, left.down / kChecked);
+    const float up = std::min(limits.max_climb, left.up / left.lasts());
+    const float down = std::min(limits.max_descent, left.down / left.lasts());
     const float length = along.head<2>().norm();
     const Vec3 ahead = length > 1e-3F ? Vec3(along.x() / length, along.y() / length, 0.0F) : Vec3(Vec3::UnitX());
     Commands commands;
@@ -97,8 +115,9 @@ struct Piece {
     Seconds span = 0.0F;
 };
 
-/// Least nearness to a piece while a command is held: straight on until the height is used up, then level. The time
-/// until the command is flown moves the beginning.
+/// Least nearness to a piece while a command is held: straight on until the height is used up, then level. The last of
+/// it is flown more and more slowly, as commands_of offers it; half of that counts. The time until the command is flown
+/// moves the beginning.
 float nearness_of(const world::Situation& s, const Vec3& command, const HeightLeft& left, const Piece& piece,
                   const world::Volume& volume) noexcept
 {
@@ -106,8 +125,8 @@ float nearness_of(const world::Situation& s, const Vec3& command, const HeightLe
     const Seconds lost =
         s.rules.latency + s.limits.velocity_lag + 0.5F * change.head<2>().norm() / s.limits.max_acceleration;
     const float climb = command.z();
-    const float room = climb > 0.0F ? left.up : left.down;
-    const Seconds until_level = climb != 0.0F ? room / std::abs(climb) : std::numeric_limits<float>::infinity();
+    const Seconds until_level = climb != 0.0F ? left.along(command) / std::abs(climb) - 0.5F * left.lasts()
+                                              : std::numeric_limits<float>::infinity();
     Vec3 begin = s.own.position + change * lost + command * piece.from;
     begin.z() -= climb * (piece.from - std::min(piece.from, until_level));
     const Seconds span = piece.span;
@@ -215,6 +234,13 @@ public:
         }
     }
 
+    /// How long a command is checked: it ends, and its stop too, where the height does.
+    [[nodiscard]] Seconds check_of(const Vec3& command) const noexcept
+    {
+        return command.z() != 0.0F ? std::min(kChecked, left_.along(command) / std::abs(command.z()) - left_.stop)
+                                   : kChecked;
+    }
+
 private:
     [[nodiscard]] std::uint32_t look_units() const noexcept
     {
@@ -276,14 +302,15 @@ std::optional<float> choose_give_way(const world::Situation& s, const Vec3& alon
         if (!budget.spend(kPathUnits)) {
             return std::nullopt;
         }
+        const Seconds checked = comparison.check_of(best.command);
         out.kind = world::ManoeuvreKind::velocity;
         out.by = kGivesWay;
         out.start = s.now;
-        out.valid_until = s.now + kChecked;
+        out.valid_until = s.now + checked;
         out.command = best.command;
         out.side = Vec3::Zero();
         out.cost = 0.0F;
-        path::predict_velocity_command(s.own, out.command, kChecked, kStep, s.limits, out.path);
+        path::predict_velocity_command(s.own, out.command, checked, kStep, s.limits, out.path);
         const float margin = check_manoeuvre(s, out, settings, budget).margin;
         if (margin >= 0.0F) {
             return margin;

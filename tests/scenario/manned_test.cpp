@@ -266,6 +266,21 @@ TEST(Manned, TurnsThatReportsShowAreReckonedWith)
     }
 }
 
+/// Near mid-air collisions while descents to the floor failed their check.
+TEST(Manned, DescendsBelowAnAircraftThatDescendsUntilTheFloor)
+{
+    const fs::path folder(JINK_ENCOUNTER_MODELS);
+    const std::vector<fs::path> files = models();
+    SKIP_WITHOUT_MODELS(files)
+    for (const auto& [name, seed] : {std::pair<const char*, std::uint64_t>{"uncor_1200only_fwse_v1p2.txt", 1216},
+                                     {"uncor_1200only_fwse_v1p2.txt", 1839},
+                                     {"uncor_1200only_rotorcraft_v1p2.txt", 1087},
+                                     {"glider_v1.txt", 742}}) {
+        EXPECT_FALSE(fly_manned(EncounterModel::load(folder / name), MannedSensor::adsb, seed, {}, {}).near)
+            << name << ", " << seed;
+    }
+}
+
 TEST(Manned, WithoutTheRuleTheyAreNot)
 {
     const std::vector<fs::path> files = models();

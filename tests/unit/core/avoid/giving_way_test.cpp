@@ -203,6 +203,73 @@ TEST(GivingWay, StaysAboveTheFloorAndBelowTheCeiling)
     EXPECT_LT(lowest, 10.0F) << "down, below the aircraft";
 }
 
+/// In the way of a fast aircraft that comes down, a slow vehicle has one way out: down. What is offered of it passes
+/// its check all the way, and most of the height is used.
+TEST(GivingWay, DescendsToTheFloorWithoutRefusal)
+{
+    Random random(31);
+    for (int i = 0; i < 100; ++i) {
+        HighFlight f;
+        const float height = random.uniform(15.0F, 30.0F);
+        f.scene.limits.cruise_speed = 3.0F;
+        f.scene.leg(Vec3(0, 0, height), Vec3(20000, 0, height), 3.0F);
+        f.scene.own.position.z() = height;
+        f.scene.own.velocity = Vec3(3, 0, 0);
+        f.scene.limits.max_descent = 3.0F;
+        f.scene.limits.max_vertical_acceleration = random.uniform(1.0F, 4.0F);
+        f.scene.limits.velocity_lag = random.uniform(0.1F, 0.6F);
+        f.aircraft(Vec3(900.0F, random.uniform(-20.0F, 20.0F), 60.0F), Vec3(-60.0F, 0.0F, -3.0F));
+        FakeMethod method = never();
+        Supervisor supervisor(quick(), method);
+        bool in_control = false;
+        int refused = 0;
+        for (int k = 0; k < 140; ++k) {
+            const Guidance g = f.update(supervisor, in_control);
+            in_control = g.wants_control;
+            refused += g.by == kGivesWay ? 0 : 1;
+            f.pass(in_control ? g.velocity : Vec3(3, 0, 0), 0.1F);
+        }
+        EXPECT_EQ(refused, 0) << "case " << i << ", from " << height << " m";
+        EXPECT_LT(f.scene.own.position.z(), 3.0F + 0.5F * height) << "case " << i;
+        EXPECT_GE(f.scene.own.position.z(), f.scene.limits.half_extents.z()) << "case " << i;
+    }
+}
+
+/// A wing cannot stop: its check ends with some seconds straight on, and the height has to last for them.
+TEST(GivingWay, AWingNearTheFloorOrTheCeilingIsOfferedWhatPassesItsCheck)
+{
+    Random random(32);
+    int vertical = 0;
+    for (int i = 0; i < 100; ++i) {
+        HighFlight f;
+        const float height = random.uniform(15.0F, 60.0F);
+        f.scene.limits.kind = vehicle::VehicleKind::fixed_wing;
+        f.scene.limits.cruise_speed = random.uniform(12.0F, 25.0F);
+        f.scene.limits.max_vertical_acceleration = random.uniform(1.0F, 4.0F);
+        f.scene.limits.velocity_lag = random.uniform(0.1F, 0.6F);
+        f.scene.leg(Vec3(0, 0, height), Vec3(20000, 0, height), f.scene.limits.cruise_speed);
+        f.scene.own.position.z() = height;
+        f.scene.own.velocity = Vec3(f.scene.limits.cruise_speed, 0, 0);
+        f.scene.airspace.has_ceiling = true;
+        f.scene.airspace.ceiling = 75.0F;
+        f.aircraft(Vec3(1500.0F, random.uniform(-20.0F, 20.0F), random.uniform(-60.0F, 60.0F)),
+                   Vec3(-60.0F, 0.0F, 0.0F));
+        FakeMethod method = never();
+        Supervisor supervisor(quick(), method);
+        bool in_control = false;
+        int refused = 0;
+        for (int k = 0; k < 200; ++k) {
+            const Guidance g = f.update(supervisor, in_control);
+            in_control = g.wants_control;
+            refused += g.by == kGivesWay ? 0 : 1;
+            vertical += std::abs(g.velocity.z()) > 0.1F ? 1 : 0;
+            f.pass(in_control ? g.velocity : f.scene.own.velocity, 0.1F);
+        }
+        EXPECT_EQ(refused, 0) << "case " << i << ", from " << height << " m";
+    }
+    EXPECT_GT(vertical, 5000) << "of 20 000 commands";
+}
+
 /// Contact comes before well clear: whatever gives way is clear of all else, as the final check has it.
 TEST(GivingWay, NeverTowardsWhatIsThereBesides)
 {
