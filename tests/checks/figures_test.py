@@ -49,6 +49,8 @@ class CampaignOfOtherSources(unittest.TestCase):
     def test_begun_anew(self):
         script = "if [ -e out/old ]; then echo 'out belongs to another set-up: x'; exit 2; fi; echo fresh"
         self.assertEqual(self.run_with(script), "fresh\n")
+        goes_on = "{ [ ! -e out/old ] || { echo 'out belongs to another set-up: x'; false; }; } || true; [ -e out/old ] || echo fresh"
+        self.assertEqual(self.run_with(goes_on), "fresh\n")
 
     def test_other_failures_stay(self):
         with self.assertRaises(figures_run.Failed):

@@ -64,12 +64,15 @@ def run(command, top, build, folder):
 
 def run_again(command, top, build, folder):
     """As run(); a campaign that was begun by other sources is begun anew, one of the same sources is taken up."""
+    others = "belongs to another set-up"
     try:
-        return run(command, top, build, folder)
+        output, seconds = run(command, top, build, folder)
+        if others not in output:
+            return output, seconds
     except Failed as failed:
-        if "belongs to another set-up" not in str(failed) or not (folder / "out").is_dir():
+        if others not in str(failed) or not (folder / "out").is_dir():
             raise
-    shutil.rmtree(folder / "out")
+    shutil.rmtree(folder / "out", ignore_errors=True)
     return run(command, top, build, folder)
 
 
