@@ -203,6 +203,23 @@ TEST(GivingWay, StaysAboveTheFloorAndBelowTheCeiling)
     EXPECT_LT(lowest, 10.0F) << "down, below the aircraft";
 }
 
+/// Updates of a flight in which nothing gave way; `vertical` counts the commands that climb or descend.
+int refusals(HighFlight& f, int updates, int& vertical)
+{
+    FakeMethod method = never();
+    Supervisor supervisor(quick(), method);
+    bool in_control = false;
+    int refused = 0;
+    for (int i = 0; i < updates; ++i) {
+        const Guidance g = f.update(supervisor, in_control);
+        in_control = g.wants_control;
+        refused += g.by == kGivesWay ? 0 : 1;
+        vertical += std::abs(g.velocity.z()) > 0.1F ? 1 : 0;
+        f.pass(in_control ? g.velocity : f.scene.own.velocity, 0.1F);
+    }
+    return refused;
+}
+
 /// In the way of a fast aircraft that comes down, a slow vehicle has one way out: down. What is offered of it passes
 /// its check all the way, and most of the height is used.
 TEST(GivingWay, DescendsToTheFloorWithoutRefusal)
@@ -219,17 +236,8 @@ TEST(GivingWay, DescendsToTheFloorWithoutRefusal)
         f.scene.limits.max_vertical_acceleration = random.uniform(1.0F, 4.0F);
         f.scene.limits.velocity_lag = random.uniform(0.1F, 0.6F);
         f.aircraft(Vec3(900.0F, random.uniform(-20.0F, 20.0F), 60.0F), Vec3(-60.0F, 0.0F, -3.0F));
-        FakeMethod method = never();
-        Supervisor supervisor(quick(), method);
-        bool in_control = false;
-        int refused = 0;
-        for (int k = 0; k < 140; ++k) {
-            const Guidance g = f.update(supervisor, in_control);
-            in_control = g.wants_control;
-            refused += g.by == kGivesWay ? 0 : 1;
-            f.pass(in_control ? g.velocity : Vec3(3, 0, 0), 0.1F);
-        }
-        EXPECT_EQ(refused, 0) << "case " << i << ", from " << height << " m";
+        int vertical = 0;
+        EXPECT_EQ(refusals(f, 140, vertical), 0) << "case " << i << ", from " << height << " m";
         EXPECT_LT(f.scene.own.position.z(), 3.0F + 0.5F * height) << "case " << i;
         EXPECT_GE(f.scene.own.position.z(), f.scene.limits.half_extents.z()) << "case " << i;
     }
@@ -254,18 +262,7 @@ TEST(GivingWay, AWingNearTheFloorOrTheCeilingIsOfferedWhatPassesItsCheck)
         f.scene.airspace.ceiling = 75.0F;
         f.aircraft(Vec3(1500.0F, random.uniform(-20.0F, 20.0F), random.uniform(-60.0F, 60.0F)),
                    Vec3(-60.0F, 0.0F, 0.0F));
-        FakeMethod method = never();
-        Supervisor supervisor(quick(), method);
-        bool in_control = false;
-        int refused = 0;
-        for (int k = 0; k < 200; ++k) {
-            const Guidance g = f.update(supervisor, in_control);
-            in_control = g.wants_control;
-            refused += g.by == kGivesWay ? 0 : 1;
-            vertical += std::abs(g.velocity.z()) > 0.1F ? 1 : 0;
-            f.pass(in_control ? g.velocity : f.scene.own.velocity, 0.1F);
-        }
-        EXPECT_EQ(refused, 0) << "case " << i << ", from " << height << " m";
+        EXPECT_EQ(refusals(f, 200, vertical), 0) << "case " << i << ", from " << height << " m";
     }
     EXPECT_GT(vertical, 5000) << "of 20 000 commands";
 }
