@@ -27,9 +27,9 @@ constexpr float kStay = 0.15F;
 constexpr std::uint32_t kTurnLooks = 9;
 /// Commands are alike where they differ by less than this share of the cruise speed.
 constexpr float kAlike = 0.2F;
-/// The manoeuvre is checked over this time, a climb or descent for less where the height is used up before, and over
-/// this at least [s].
+/// The manoeuvre is checked over this time [s].
 constexpr Seconds kChecked = 8.0F;
+/// A climb or descent for less where the height is used up before, but for so long at least [s].
 constexpr Seconds kCheckedAtLeast = 2.0F;
 constexpr Seconds kPathStep = 0.25F;
 constexpr float kNone = -std::numeric_limits<float>::infinity();
@@ -43,7 +43,7 @@ struct Rated {
 };
 using Commands = StaticVector<Rated, kCommandsAtMost>;
 
-/// How far the vehicle can climb and descend [m]. What is done once in a choice is compiled for size.
+/// How far the vehicle can climb and descend [m].
 struct HeightLeft {
     float up = std::numeric_limits<float>::infinity();
     float down = std::numeric_limits<float>::infinity();
@@ -63,6 +63,7 @@ Seconds stop_of(const vehicle::VehicleLimits& limits) noexcept
                : vehicle::stopping_time(Vec3(limits.cruise_speed, 0.0F, speed), limits);
 }
 
+// Once in a choice, and so compiled for size; commands_of likewise.
 [[gnu::cold, gnu::noinline]] HeightLeft height_left(const world::Situation& s) noexcept
 {
     HeightLeft left;
